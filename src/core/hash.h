@@ -1,0 +1,45 @@
+#pragma once
+// Hashes: random numbers that depend on a seed and an index only (not on order or threads), and a
+// checksum of bytes.
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+namespace sphgeo {
+
+/// Mixes all bits of x (a bijection of 64-bit integers: xor-shifts and odd multipliers).
+constexpr std::uint64_t mix_bits(std::uint64_t x) {
+  x ^= x >> 32;
+  x *= 0xd6e8feb86659fd93u;
+  x ^= x >> 32;
+  x *= 0xd6e8feb86659fd93u;
+  x ^= x >> 32;
+  return x;
+}
+
+/// A 64-bit random number for (seed, index).
+constexpr std::uint64_t random_bits(std::uint64_t seed, std::uint64_t index) {
+  return mix_bits(mix_bits(seed + 0x9e3779b97f4a7c15u) ^ mix_bits(index * 0x9e3779b97f4a7c15u + 1));
+}
+
+/// Uniform in [0, 1), a multiple of 2^-53.
+constexpr double random_uniform(std::uint64_t seed, std::uint64_t index) {
+  return static_cast<double>(random_bits(seed, index) >> 11) * 0x1p-53;
+}
+
+inline constexpr std::uint64_t fnv1a_start = 0xcbf29ce484222325u;
+
+/// FNV-1a, 64 bits. Pass the result of one call as `state` of the next to continue.
+inline std::uint64_t fnv1a(const void* data, std::size_t bytes, std::uint64_t state = fnv1a_start) {
+  const auto* p = static_cast<const unsigned char*>(data);
+  for (std::size_t k = 0; k < bytes; ++k) state = (state ^ p[k]) * 0x100000001b3u;
+  return state;
+}
+
+constexpr std::uint64_t fnv1a(std::string_view text, std::uint64_t state = fnv1a_start) {
+  for (const char c : text) state = (state ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return state;
+}
+
+}  // namespace sphgeo

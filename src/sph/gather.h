@@ -1,0 +1,144 @@
+#pragma once
+// The loop over pairs: for each particle i, sums over its neighbors j. It owns loading, padding,
+// summing and threads; an effect brings a pair function and says what to do with the sums.
+//
+//   struct Pressure {                                 // plain arithmetic on a number type T
+//     Kernel<Dim> kernel;
+//     template <class T> struct Sums { LaneVec<Dim, T> force{}; };
+//     template <class T>
+//     void operator()(Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T>& j,
+//                     const LaneVec<Dim, T>& r, const T& r2) const {
+//       sum.force -= (i[p] + j[p]) * j[V] * kernel.dw_over_r(r2) * r;
+//     }
+//   };
+//   gather<Pressure::Sums>(list, records, records, Pressure{kernel},
+//                          [&](Index i, const Pressure::Sums<double>& sum) { ... });
+//
+// i and j are the records, r = r_i - r_j [m] (so r / |r| is e_ij and r W'(r)/r the gradient of W at
+// i), r2 = r . r. Only i is written, so results do not depend on the number of threads.
+
+#include <array>
+#include <bit>
+#include <type_traits>
+
+#include "core/parallel.h"
+#include "sph/neighbor_list.h"
+#include "sph/records.h"
+
+namespace sphgeo {
+
+namespace detail {
+
+// r_i - r_j of two records, in metres.
+template <int Dim, class T, int N, int M, class F>
+LaneVec<Dim, T> separation(const Record<Dim, T, N>& i, const Record<Dim, T, M>& j, F quantum) {
+  LaneVec<Dim, T> r;
+  for (int d = 0; d < Dim; ++d) {
+    if constexpr (std::is_same_v<typename ScalarOf<T>::type, float>) {
+      using Ints = typename T::Mask;
+      const Ints difference = std::bit_cast<Ints>(i[d].raw) - std::bit_cast<Ints>(j[d].raw);
+      r[d] = T(__builtin_convertvector(difference, typename T::Raw)) * quantum;
+    } else {
+      r[d] = i[d] - j[d];
+    }
+  }
+  return r;
+}
+
+// One particle in all lanes.
+template <class L, int Dim, class T, int N>
+Record<Dim, L, N> spread(const RecordView<Dim, T, N>& records, Index i) {
+  Record<Dim, L, N> record;
+  for (int n = 0; n < N; ++n)
+    for (int k = 0; k < record_size; ++k)
+      record.slot[n * record_size + k] = L((*records.part[n])[i][k]);
+  return record;
+}
+
+// The sums as an array of numbers: a struct of sums holds numbers of its type and nothing else.
+template <template <class> class Sums, class T>
+using SumArray = std::array<T, sizeof(Sums<T>) / sizeof(T)>;
+
+template <template <class> class Sums, class L>
+Sums<double> reduce(const Sums<L>& lanes) {
+  static_assert(std::is_trivially_copyable_v<Sums<L>> && sizeof(Sums<L>) % sizeof(L) == 0 &&
+                    sizeof(Sums<L>) / sizeof(L) == sizeof(Sums<double>) / sizeof(double),
+                "a struct of sums holds numbers and vectors of its type T only");
+  const auto from = std::bit_cast<SumArray<Sums, L>>(lanes);
+  SumArray<Sums, double> to{};
+  for (std::size_t k = 0; k < from.size(); ++k) to[k] = static_cast<double>(sum(from[k]));
+  return std::bit_cast<Sums<double>>(to);
+}
+
+}  // namespace detail
+
+/// gather for one block of a list, in the calling thread: for passes that walk several lists.
+template <template <class> class Sums, int Dim, class T, int N, int M, class Pair, class Finish>
+void gather_block(const NeighborList::Block& block, const RecordView<Dim, T, N>& targets,
+                  const RecordView<Dim, T, M>& sources, const Pair& pair_function,
+                  const Finish& finish) {
+  using L = Lanes<T>;
+  // Copies: the compiler keeps them in registers, as nothing in the loop can write them.
+  const Pair pair = pair_function;
+  const T quantum = static_cast<T>(sources.frame().quantum);
+  std::array<const T*, M> base;
+  for (int m = 0; m < M; ++m) base[static_cast<std::size_t>(m)] = sources.part[m]->data();
+
+  for (std::size_t k = 0; k < block.size(); ++k) {
+    const auto i = static_cast<Index>(block.targets[k]);
+    const Record<Dim, L, N> record_i = detail::spread<L>(targets, i);
+    Sums<L> sums{};
+    // The last lanes may meet the null record; the list is long enough for any width.
+    const std::uint32_t* e = block.entries.data() + block.begin[k];
+    const std::uint32_t* end = e + block.count[k];
+    for (; e < end; e += L::width) {
+      // The list is a stream of its own beside the records.
+      __builtin_prefetch(e + 1024);
+      Record<Dim, L, M> record_j;
+      for (int m = 0; m < M; ++m)
+        load_records(base[static_cast<std::size_t>(m)], e, record_j.slot + m * record_size);
+      const LaneVec<Dim, L> r = detail::separation(record_i, record_j, quantum);
+      pair(sums, record_i, record_j, r, dot(r, r));
+    }
+    finish(i, detail::reduce<Sums>(sums));
+  }
+}
+
+/// Calls finish(i, sums) for every walked target i of the list, with sums (in double) of
+/// pair(sums, i, j, r, r2) over its neighbors. `targets` and `sources` are Records, or two of them
+/// joined by with(); both sides have the frame of the list's grid. Sums are taken in the precision
+/// of the records. finish runs in parallel and may write what belongs to i only.
+template <template <class> class Sums, class Targets, class Sources, class Pair, class Finish>
+void gather(const NeighborList& list, const Targets& target_records, const Sources& source_records,
+            const Pair& pair_function, const Finish& finish) {
+  const auto targets = view(target_records);
+  const auto sources = view(source_records);
+  const auto blocks = list.blocks();
+  parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
+    gather_block<Sums>(blocks[static_cast<std::size_t>(b)], targets, sources, pair_function,
+                       finish);
+  });
+}
+
+/// What gather does, over all pairs nearer than `radius` [m], in plain double and one thread: the
+/// reference of tests. Every target is finished.
+template <template <class> class Sums, class Targets, class Sources, class Pair, class Finish>
+void brute_force(const Targets& target_records, const Sources& source_records, double radius,
+                 Pairing pairing, const Pair& pair, const Finish& finish) {
+  const auto targets = view(target_records);
+  const auto sources = view(source_records);
+  for (Index i = 0; i < targets.size(); ++i) {
+    const auto record_i = detail::spread<double>(targets, i);
+    Sums<double> sums{};
+    for (Index j = 0; j < sources.size(); ++j) {
+      if (pairing == Pairing::within && i == j) continue;
+      const auto record_j = detail::spread<double>(sources, j);
+      const auto r = detail::separation(record_i, record_j, 1.0);
+      const double r2 = dot(r, r);
+      if (r2 < radius * radius) pair(sums, record_i, record_j, r, r2);
+    }
+    finish(i, sums);
+  }
+}
+
+}  // namespace sphgeo

@@ -1,0 +1,143 @@
+#include "sph/world.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/error.h"
+#include "core/parallel.h"
+
+namespace sphgeo {
+
+template <int Dim>
+World<Dim>::World(const Model& model)
+    : model_(model), gravity_(to_scene<Dim>(model.gravity)),
+      single_(model.numerics.pair_precision == "single"),
+      frozen_(model.numerics.pair_geometry == "frozen") {}
+
+template <int Dim>
+ParticleSet<Dim>& World<Dim>::add_set(std::string name, std::string phase, double spacing, double h, bool moves) {
+  sets_.push_back(std::make_unique<ParticleSet<Dim>>(name, std::move(phase), spacing, h));
+  for (const FieldSpec* spec : {&fields::id, &fields::part, &fields::position, &fields::velocity})
+    sets_.back()->require(*spec);
+  moves_[name] = moves;
+  lost_[name] = 0;
+  return *sets_.back();
+}
+
+template <int Dim>
+ParticleSet<Dim>* World<Dim>::find(const std::string& name) const {
+  for (const auto& s : sets_)
+    if (s->name() == name) return s.get();
+  return nullptr;
+}
+
+template <int Dim>
+ParticleSet<Dim>& World<Dim>::set(const std::string& name) const {
+  if (ParticleSet<Dim>* s = find(name)) return *s;
+  throw std::logic_error("no particle set " + name);
+}
+
+template <int Dim>
+void World<Dim>::require_list(const std::string& target, const std::string& source) {
+  lists_.try_emplace({target, source});
+}
+
+template <int Dim>
+NeighborList& World<Dim>::list(const std::string& target, const std::string& source) {
+  return lists_.at({target, source});
+}
+
+template <int Dim>
+void World<Dim>::set_domain(const Vec<Dim>& lo, const Vec<Dim>& hi) {
+  lo_ = lo;
+  hi_ = hi;
+  frame_ = FixedPoint<Dim>::fit(lo, hi, reach());
+}
+
+template <int Dim>
+double World<Dim>::reach() const {
+  double h = 0;
+  for (const auto& s : sets_) h = std::max(h, s->smoothing_length());
+  return 2 * h;
+}
+
+template <int Dim>
+void World<Dim>::remove_lost(ParticleSet<Dim>& set) {
+  const auto& x = set.vector(fields::position);
+  const auto outside = [&](Index i) {
+    // Written so that NaN counts as outside.
+    return !((x[i].array() >= lo_.array()).all() && (x[i].array() <= hi_.array()).all());
+  };
+  const double count = ordered_sum(set.size(), [&](Index i) { return outside(i) ? 1.0 : 0.0; });
+  if (count == 0) return;
+  if (model_.numerics.outside == "stop") {
+    for (Index i = 0; i < set.size(); ++i)
+      if (outside(i)) {
+        const Vec3 at = to_space<Dim>(x[i]);
+        throw UnstableError(fmt::format("particle {} of set '{}' left the domain at ({:.4g}, {:.4g}, {:.4g}) m, t = {:.6g} s; "
+                                        "numerics.outside is 'stop'", set.ids()[i], set.name(), at.x(), at.y(), at.z(), clock.time));
+      }
+  }
+  std::vector<std::uint32_t> keep;
+  keep.reserve(static_cast<std::size_t>(set.size()));
+  for (Index i = 0; i < set.size(); ++i)
+    if (!outside(i)) keep.push_back(static_cast<std::uint32_t>(i));
+  lost_[set.name()] += set.size() - static_cast<Index>(keep.size());
+  set.permute(keep);
+}
+
+template <int Dim>
+void World<Dim>::rearrange() {
+  for (auto& s : sets_) {
+    CellGrid<Dim>& grid = grids_[s->name()];
+    const bool first = grid.size() != s->size();
+    if (!moves_[s->name()] && !first) continue;
+    if (moves_[s->name()]) remove_lost(*s);
+    const auto& x = s->vector(fields::position);
+    grid.build({x.data(), static_cast<std::size_t>(x.size())}, frame_, reach());
+    s->permute({grid.order().begin(), grid.order().end()});
+    grid.set_sorted();
+    for (int which = 0; which < 2; ++which) {
+      const auto it = records_.find({s->name(), which});
+      if (it == records_.end()) continue;
+      if (single_) it->second.single.resize(s->size(), frame_);
+      else it->second.full.resize(s->size(), frame_);
+    }
+    if (records_.contains({s->name(), 0})) pack_positions(*s);
+  }
+  for (auto& [key, list] : lists_) {
+    const ParticleSet<Dim>& target = set(key.first);
+    const ParticleSet<Dim>& source = set(key.second);
+    const auto& x = target.vector(fields::position);
+    // Section 3.5: pairs of different sets use the larger smoothing length, so that both see each other.
+    const double radius = 2 * std::max(target.smoothing_length(), source.smoothing_length());
+    list.build<Dim>({x.data(), static_cast<std::size_t>(x.size())}, grids_.at(key.second), radius,
+                    key.first == key.second ? Pairing::within : Pairing::across);
+  }
+}
+
+template <int Dim>
+void World<Dim>::pack_positions(ParticleSet<Dim>& set) {
+  const auto& x = set.vector(fields::position);
+  with_pair_precision([&](auto number) {
+    auto& r = records(set.name()).template get<decltype(number)>();
+    parallel_for(set.size(), [&](Index i) { r.set_position(i, x[i]); });
+  });
+}
+
+template <int Dim>
+std::size_t World<Dim>::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& s : sets_) sum += s->bytes();
+  for (const auto& [name, r] : records_) sum += r.single.bytes() + r.full.bytes();
+  for (const auto& [name, g] : grids_) sum += g.bytes();
+  for (const auto& [key, l] : lists_) sum += l.bytes();
+  return sum;
+}
+
+template class World<2>;
+template class World<3>;
+
+}  // namespace sphgeo

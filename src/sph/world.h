@@ -1,0 +1,114 @@
+#pragma once
+// Everything that a running scene consists of: particle sets, packed records, grids and neighbor
+// lists, gravity and the clocks. No physics.
+
+#include <map>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "deck/model.h"
+#include "particles/particle_set.h"
+#include "sph/cell_grid.h"
+#include "sph/fixed_point.h"
+#include "sph/neighbor_list.h"
+#include "sph/records.h"
+
+namespace sphgeo {
+
+/// The clocks of Algorithm 2.
+struct Clock {
+  double time = 0;          ///< s
+  double dt_acoustic = 0;   ///< of the running acoustic step, s
+  double dt_advection = 0;  ///< of the running advection step, s
+  long advection_steps = 0;
+  long acoustic_steps = 0;
+};
+
+/// Packed records of one set in the precision of the pair sums; the other one stays empty.
+template <int Dim>
+struct RecordPair {
+  Records<Dim, float> single;
+  Records<Dim, double> full;
+
+  template <class T>
+  Records<Dim, T>& get() {
+    if constexpr (std::is_same_v<T, float>) return single;
+    else return full;
+  }
+};
+
+template <int Dim>
+class World {
+ public:
+  explicit World(const Model& model);
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  const Model& model() const { return model_; }
+  const Vec<Dim>& gravity() const { return gravity_; }  ///< m/s2
+  Clock clock;
+
+  /// Adds a set. `moves` is false for sets whose particles never change place.
+  ParticleSet<Dim>& add_set(std::string name, std::string phase, double spacing, double h, bool moves);
+  /// Throws std::logic_error when there is none of that name.
+  ParticleSet<Dim>& set(const std::string& name) const;
+  ParticleSet<Dim>* find(const std::string& name) const;
+  const std::vector<std::unique_ptr<ParticleSet<Dim>>>& sets() const { return sets_; }
+
+  void require_list(const std::string& target, const std::string& source);
+  NeighborList& list(const std::string& target, const std::string& source);
+  const std::map<std::pair<std::string, std::string>, NeighborList>& lists() const { return lists_; }
+  const CellGrid<Dim>& grid(const std::string& set) const { return grids_.at(set); }
+
+  /// Pair sums run in single or double precision: calls f with a value of that type.
+  template <class F>
+  void with_pair_precision(F&& f) {
+    if (single_) f(float{});
+    else f(double{});
+  }
+  bool single_precision() const { return single_; }
+  /// Whether pair sums see positions of the last rearrangement (true) or of now.
+  bool frozen_geometry() const { return frozen_; }
+  /// Records number `which` (0, 1) of a set: kept by the effects, sized by rearrange().
+  RecordPair<Dim>& records(const std::string& set, int which = 0) { return records_[{set, which}]; }
+
+  /// Sets the box outside of which particles are lost and fits the fixed-point frame to it.
+  void set_domain(const Vec<Dim>& lo, const Vec<Dim>& hi);
+  const Vec<Dim>& domain_lo() const { return lo_; }
+  const Vec<Dim>& domain_hi() const { return hi_; }
+
+  /// Line 28 of Algorithm 2: removes lost particles, sorts by cell, rebuilds grids and lists and the
+  /// places in the records.
+  void rearrange();
+  /// Writes the positions of a set into its first records.
+  void pack_positions(ParticleSet<Dim>& set);
+  /// Particles that left the domain so far, by set.
+  const std::map<std::string, Index>& lost() const { return lost_; }
+
+  /// Memory of fields, records, grids and lists, bytes.
+  std::size_t bytes() const;
+
+ private:
+  void remove_lost(ParticleSet<Dim>& set);
+  double reach() const;
+
+  const Model& model_;
+  Vec<Dim> gravity_;
+  bool single_, frozen_;
+  std::vector<std::unique_ptr<ParticleSet<Dim>>> sets_;
+  std::map<std::string, bool> moves_;
+  std::map<std::string, CellGrid<Dim>> grids_;
+  std::map<std::pair<std::string, std::string>, NeighborList> lists_;
+  std::map<std::pair<std::string, int>, RecordPair<Dim>> records_;
+  std::map<std::string, Index> lost_;
+  Vec<Dim> lo_ = Vec<Dim>::Zero(), hi_ = Vec<Dim>::Zero();
+  FixedPoint<Dim> frame_;
+};
+
+extern template class World<2>;
+extern template class World<3>;
+
+}  // namespace sphgeo
