@@ -1,0 +1,140 @@
+#pragma once
+// The validated deck as plain values in SI units, and the functions that make, write and describe
+// it.
+
+#include <array>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/diagnostic.h"
+#include "core/types.h"
+#include "deck/interfaces.h"
+#include "deck/schema.h"
+
+namespace sphgeo {
+
+/// A body of one material that fills a shape at t = 0.
+struct Body {
+  std::string name;
+  std::string material;  ///< names an entry of `materials`
+  std::shared_ptr<const Shape> shape;
+  std::string filling = "lattice";        ///< lattice | relaxed
+  std::array<Expression, 3> velocity;     ///< initial, m/s
+  WordOrExpression pressure{"zero", {}};  ///< initial: zero | hydrostatic | a formula (Pa)
+  std::optional<double> level;  ///< z of the free surface for hydrostatic; empty: the body's top
+  static Schema<Body> schema();
+};
+
+/// Choices of the numerical method; the defaults are those of the paper.
+struct Numerics {
+  std::string pair_precision = "single";  ///< single | double arithmetic in pair sums
+  std::string pair_geometry = "frozen";   ///< frozen | current positions within an advection step
+  double cfl_acoustic = 0.4;
+  double cfl_advection = 0.2;
+  double advection_ratio_max = 5.5;
+  double limiter = 3.0;                                ///< Eq. 63, water
+  double transport_coefficient = 0.2;                  ///< alpha of Eq. 87
+  std::string density_reinitialization = "summation";  ///< summation | none
+  bool transport_velocity = true;
+  std::optional<double> h_factor_water;  ///< h / dp; empty: 1.8
+  double max_lost_fraction = 0.01;
+  std::string outside = "remove";  ///< remove | stop
+  std::optional<Vec3> domain_min;  ///< m; empty: from bodies and boundaries
+  std::optional<Vec3> domain_max;
+  static Schema<Numerics> schema();
+};
+
+/// Particle frames for ParaView.
+struct Frames {
+  std::optional<double> every;        ///< s; empty: end_time / 20
+  std::vector<std::string> fields;    ///< empty: the usual ones of each set
+  std::string precision = "float32";  ///< float32 | float64
+  static Schema<Frames> schema();
+};
+
+struct Output {
+  Frames frames;
+  std::optional<double> run_every;  ///< rows of run.csv, s; empty: end_time / 200
+  static Schema<Output> schema();
+};
+
+/// A result the deck claims. A probe's column is cut to [from, to] and
+///   - reduced to one number: value = reduced / scale; or
+///   - with `reduce: curve`, compared with the table reference_csv: value = norm of
+///     (column / scale - y_scale * y) over the table's abscissae x_scale * x that lie in [from,
+///     to], divided by the range (max - min) of y_scale * y there.
+/// `within`: |value - reference| <= tolerance (times |reference| if relative); for a curve
+/// value <= tolerance. `below`: value <= tolerance. `above`: value >= tolerance.
+struct Expect {
+  std::string name;
+  std::string probe;  ///< "probe" (its first column) or "probe.column"
+  std::string reduce = "last";
+  std::optional<double> at;    ///< s, for `reduce: at`
+  std::optional<double> from;  ///< s
+  std::optional<double> to;    ///< s
+  double scale = 1.0;
+  std::optional<double> reference;
+  std::optional<FilePath> reference_csv;
+  std::optional<std::string> x;  ///< column of the table; empty: the first
+  std::optional<std::string> y;  ///< column of the table; empty: the second
+  double x_scale = 1.0;
+  double y_scale = 1.0;
+  std::string norm = "l2";  ///< l2 | max
+  double tolerance = 0.0;
+  std::string tolerance_kind = "relative";  ///< relative | absolute
+  std::string measure = "within";           ///< within | below | above
+  std::string source;
+  static Schema<Expect> schema();
+};
+
+/// A whole deck.
+struct Model {
+  std::string title;
+  int dimension = 3;
+  double resolution = 0.0;        ///< particle spacing dp, m
+  Vec3 gravity{0.0, 0.0, -9.81};  ///< m/s2
+  double end_time = 0.0;          ///< s
+  Variables variables;
+  std::vector<std::string> include;  ///< already merged when the Model exists
+  std::vector<std::shared_ptr<const MaterialSpec>> materials;
+  std::vector<Body> bodies;
+  std::vector<std::shared_ptr<const BoundarySpec>> boundaries;
+  std::vector<std::shared_ptr<const ProbeSpec>> probes;
+  Output output;
+  Numerics numerics;
+  std::vector<Expect> expect;
+
+  Places places;         ///< where each key path stands
+  Diagnostics warnings;  ///< of the reading
+
+  /// Where a key path (or its nearest ancestor) stands in the deck.
+  Place place_of(const std::string& path) const { return place_in(places, path); }
+  /// The material of that name, or nullptr.
+  const MaterialSpec* material(const std::string& material_name) const;
+  double frame_interval() const { return output.frames.every.value_or(end_time / 20); }
+  double run_interval() const { return output.run_every.value_or(end_time / 200); }
+  double probe_interval(const ProbeSpec& p) const { return p.every.value_or(end_time / 500); }
+  static Schema<Model> schema();
+};
+
+/// Reads and checks a deck file ("-": standard input) with `--set` overrides.
+/// Throws DeckError with every finding; warnings stay in the Model.
+Model read_deck(const std::string& path, const std::vector<std::string>& overrides = {});
+
+/// The same from a text; `name` stands for the file in findings, files are looked up in `folder`.
+Model read_deck_text(const std::string& text, const std::vector<std::string>& overrides = {},
+                     const std::string& name = "deck", const std::string& folder = ".");
+
+/// The deck with all defaults filled in, readable again with an identical result.
+std::string resolved_yaml(const Model& model);
+
+/// JSON Schema (draft 7) of the deck language.
+Json json_schema();
+
+/// Hash of what decides the result: the resolved deck without the keys that may change on resume.
+std::string deck_hash(const Model& model);
+
+}  // namespace sphgeo
