@@ -1,0 +1,135 @@
+#!/usr/bin/env python3
+"""Checks the rules of the house that a compiler does not: which room may include which, file lengths,
+and names. Prints each breach as file:line: sentence; exit 1 when there is one.
+
+    check_house.py PROJECT_ROOT
+"""
+import re
+import sys
+from pathlib import Path
+
+# Lowest first; the rooms of one tuple are neighbours.
+ROOMS = [("core",), ("deck",), ("particles",), ("sph",), ("geometry", "materials"),
+         ("boundaries", "effects", "probes"), ("scene",), ("plan",), ("relax", "solve", "output"),
+         ("study", "report", "compare"), ("cli",)]
+LEVEL = {room: level for level, rooms in enumerate(ROOMS) for room in rooms}
+# "About 400": a file may be a screenful of declarations over it, not more.
+MAX_LINES = 420
+# Rooms where things are added, one file each, named after the type it registers.
+PLUGIN_ROOMS = ("geometry", "materials", "boundaries", "effects", "probes")
+
+INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"')
+REGISTERED = re.compile(r'\bRegister\w*\s*<[^;"]*>\s*\w*\s*[({]\s*"([^"]+)"')
+UNFINISHED = re.compile(r"\b(" + "|".join(["TO" + "DO", "FIX" + "ME", "X" * 3, "HA" + "CK"]) + r")\b")
+
+
+def lines_of(path):
+    return path.read_text(encoding="utf-8").splitlines()
+
+
+def code_files(folder):
+    return sorted(p for p in folder.rglob("*") if p.suffix in (".h", ".cpp"))
+
+
+def check_includes(root):
+    """Rooms include downwards, neighbours only without a cycle; paths are rooted at src/."""
+    src = root / "src"
+    sideways = {}  # (from, to) -> the place where it was first seen
+    for path in code_files(src):
+        parts = path.relative_to(src).parts
+        if len(parts) == 1:
+            if path.name != "main.cpp":
+                yield f"{path}:1: a file in no room"
+            continue
+        room = parts[0]
+        if room not in LEVEL:
+            yield f"{path}:1: '{room}' is no room of the house"
+            continue
+        for number, line in enumerate(lines_of(path), 1):
+            found = INCLUDE.match(line)
+            if not found:
+                continue
+            target = found.group(1)
+            if not (src / target).is_file():
+                yield f'{path}:{number}: "{target}" is no file below src/'
+                continue
+            other = target.split("/")[0]
+            if other == room or other not in LEVEL:
+                continue
+            if LEVEL[other] > LEVEL[room]:
+                yield f"{path}:{number}: {room} must not include the higher room {other}"
+            elif LEVEL[other] == LEVEL[room]:
+                sideways.setdefault((room, other), f"{path}:{number}")
+    for (room, other), place in sorted(sideways.items()):
+        if reaches(sideways, other, room):
+            yield f"{place}: {room} and {other} include each other"
+
+
+def reaches(edges, start, goal):
+    """True when a chain of edges leads from start to goal."""
+    seen, todo = set(), [start]
+    while todo:
+        room = todo.pop()
+        if room == goal:
+            return True
+        if room not in seen:
+            seen.add(room)
+            todo += [b for a, b in edges if a == room]
+    return False
+
+
+def check_texts(root):
+    """Length, macros, `using namespace`, include guards and words that mark an unfinished part."""
+    for folder in (root / "src", root / "tests"):
+        for path in code_files(folder):
+            lines = lines_of(path)
+            header = path.suffix == ".h"
+            if len(lines) > MAX_LINES:
+                yield f"{path}:{len(lines)}: longer than about 400 lines"
+            if header and "#pragma once" not in lines:
+                yield f"{path}:1: a header without #pragma once"
+            for number, line in enumerate(lines, 1):
+                if header and re.match(r"\s*using\s+namespace\b", line):
+                    yield f"{path}:{number}: using namespace in a header"
+                if folder.name == "src" and re.match(r"\s*#\s*define\b", line):
+                    yield f"{path}:{number}: a macro"
+                if UNFINISHED.search(line):
+                    yield f"{path}:{number}: a word that marks an unfinished part"
+
+
+def check_names(root):
+    """A file that registers a type carries its name: one name everywhere."""
+    for room in PLUGIN_ROOMS:
+        for path in code_files(root / "src" / room):
+            names = REGISTERED.findall(path.read_text(encoding="utf-8"))
+            if names and path.stem not in names:
+                yield f"{path}:1: registers {', '.join(sorted(set(names)))} but is not named so"
+
+
+def check_tests(root):
+    """tests/<room>/test_*.cpp holds TEST_SUITE("<room>"), so that the room's ctest entry runs it."""
+    for path in sorted((root / "tests").glob("*/test_*.cpp")):
+        suites = re.findall(r'TEST_SUITE(?:_BEGIN)?\s*\(\s*"([^"]*)"', path.read_text(encoding="utf-8"))
+        if suites != [path.parent.name]:
+            yield f'{path}:1: wants one TEST_SUITE("{path.parent.name}"), has {suites}'
+
+
+def findings(root):
+    for check in (check_includes, check_texts, check_names, check_tests):
+        yield from check(root)
+
+
+def main():
+    root = Path(sys.argv[1])
+    if not code_files(root / "src"):
+        print(f"{root}: no sources below src/")
+        return 1
+    found = list(findings(root))
+    for finding in found:
+        print(finding)
+    print(f"house: {len(code_files(root / 'src'))} files, {len(found)} breaches")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
