@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+"""Runs a deck with 1, 2 and 4 threads: each run ends well, what the deck expects is met, the run folder
+is complete and its resolved deck is a valid deck, and the results are the same bits.
+
+    run_case.py SPHGEO DECK RUN_FOLDER [sphgeo run options...]
+"""
+import csv
+import json
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+THREADS = (1, 2, 4)
+# What a run says of itself that may differ from one run to the next: clocks and the machine.
+OWN = ("wall", "seconds", "per_s", "memory", "eta", "threads", "rate", "bytes")
+
+
+def call(*words):
+    """Runs a command; on failure prints what it said and ends the test."""
+    done = subprocess.run([str(w) for w in words], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    if done.returncode != 0:
+        print(" ".join(map(str, words)), f"\nexit {done.returncode}")
+        print(done.stdout[-4000:], done.stderr[-4000:], sep="\n")
+        sys.exit(1)
+
+
+def results(folder):
+    """Everything in the run folder that must not depend on the number of threads, by name."""
+    found = {}
+    for path in sorted(p for p in folder.rglob("*") if p.is_file()):
+        name = path.relative_to(folder).as_posix()
+        if name == "summary.json":
+            summary = json.loads(path.read_text())
+            found[name] = {k: summary[k] for k in ("status", "deck_hash", "particles", "steps", "time_s",
+                                                   "expect", "ledger")}
+        elif name == "run.csv":
+            with open(path, newline="") as file:
+                rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+            found[name] = [{k: v for k, v in row.items() if not any(w in k for w in OWN)} for row in rows]
+        else:
+            found[name] = path.read_bytes()
+    return found
+
+
+def check_folder(sphgeo, folder, found):
+    """Sentences about what is missing from a run folder."""
+    call(sphgeo, "check", folder / "resolved.yaml")
+    if found.get("summary.json", {}).get("status") != "done":
+        yield f"summary.json: status is {found.get('summary.json', {}).get('status')}, not done"
+    if not found.get("run.csv"):
+        yield "run.csv has no rows"
+    collections = sorted(folder.rglob("*.pvd"))
+    if not collections:
+        yield "there is no .pvd"
+    for pvd in collections:
+        frames = [pvd.parent / e.get("file") for e in xml.parse(pvd).iter("DataSet")]
+        if not frames or not all(f.is_file() for f in frames):
+            yield f"{pvd.name} names frames that are not there, or none"
+
+
+def main():
+    sphgeo, deck, folder, options = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3]), sys.argv[4:]
+    shutil.rmtree(folder, ignore_errors=True)
+    wrong, first = [], None
+    for threads in THREADS:
+        here = folder / f"threads{threads}"
+        here.parent.mkdir(parents=True, exist_ok=True)
+        call(sphgeo, "run", deck, "-o", here, "--threads", threads, "--verify", *options)
+        found = results(here)
+        if first is None:
+            first = found
+            wrong += check_folder(sphgeo, here, found)
+        for name in sorted(set(first) | set(found)):
+            if first.get(name) != found.get(name):
+                wrong.append(f"{name} differs between {THREADS[0]} and {threads} threads")
+    for sentence in wrong:
+        print(f"{folder}: {sentence}")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
