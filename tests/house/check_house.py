@@ -19,7 +19,10 @@ MAX_LINES = 420
 PLUGIN_ROOMS = ("geometry", "materials", "boundaries", "effects", "probes")
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"')
-REGISTERED = re.compile(r'\bRegister\w*\s*<[^;"]*>\s*\w*\s*[({]\s*"([^"]+)"')
+# A type is registered under a name; an effect's name is the first word of its info().
+REGISTERS = re.compile(r"^\s*(?:static |inline )*const(?:expr)? Register\w*\s*<", re.MULTILINE)
+REGISTERED = re.compile(r'\bRegister\w*\s*<[^;"]*>\s*\w*\s*[({]\s*"([^"]+)"'
+                        r'|\bEffectInfo\s+info\(\)\s*\{\s*return\s*(?:EffectInfo\s*)?\{\s*"([^"]+)"')
 UNFINISHED = re.compile(r"\b(" + "|".join(["TO" + "DO", "FIX" + "ME", "X" * 3, "HA" + "CK"]) + r")\b")
 
 
@@ -101,9 +104,10 @@ def check_names(root):
     """A file that registers a type carries its name: one name everywhere."""
     for room in PLUGIN_ROOMS:
         for path in code_files(root / "src" / room):
-            names = REGISTERED.findall(path.read_text(encoding="utf-8"))
-            if names and path.stem not in names:
-                yield f"{path}:1: registers {', '.join(sorted(set(names)))} but is not named so"
+            text = path.read_text(encoding="utf-8")
+            names = {a or b for a, b in REGISTERED.findall(text)}
+            if REGISTERS.search(text) and path.stem not in names:
+                yield f"{path}:1: registers {', '.join(sorted(names)) or 'something'} but is not named so"
 
 
 def check_tests(root):

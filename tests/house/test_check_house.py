@@ -62,7 +62,13 @@ class HouseRules(unittest.TestCase):
         self.expect_one("unfinished", src__core__a_dot_cpp="// " + "TO" + "DO: later\n")
 
     def test_names(self):
-        self.expect_one("registers box", src__geometry__boxes_dot_cpp='Register<Shape, Box> r{"box"};\n')
+        box = 'static const Register<Shape, Box> registered{"box"};\n'
+        drag = 'EffectInfo info() { return {"drag"}; }\nconst RegisterEffect<Drag> registered;\n'
+        self.assertEqual(self.found(src__geometry__box_dot_cpp=box, src__effects__drag_dot_cpp=drag), [])
+        self.expect_one("registers box", src__geometry__boxes_dot_cpp=box)
+        self.expect_one("registers drag", src__effects__darcy_dot_cpp=drag)
+        self.expect_one("registers something",
+                        src__effects__drag_dot_cpp="const RegisterEffect<Drag> registered;\n")
 
     def test_suites(self):
         self.expect_one("TEST_SUITE", tests__core__test_a_dot_cpp='TEST_SUITE("deck") {}\n')
