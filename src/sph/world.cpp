@@ -113,7 +113,7 @@ void World<Dim>::rearrange() {
     const auto& x = target.vector(fields::position);
     // Section 3.5: pairs of different sets use the larger smoothing length, so that both see each other.
     const double radius = 2 * std::max(target.smoothing_length(), source.smoothing_length());
-    list.build<Dim>({x.data(), static_cast<std::size_t>(x.size())}, grids_.at(key.second), radius,
+    list.template build<Dim>({x.data(), static_cast<std::size_t>(x.size())}, grids_.at(key.second), radius,
                     key.first == key.second ? Pairing::within : Pairing::across);
   }
 }

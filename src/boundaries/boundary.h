@@ -1,0 +1,54 @@
+#pragma once
+// Boundaries made of wall particles, fixed or moved in a prescribed way.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "boundaries/motion.h"
+#include "core/types.h"
+#include "deck/interfaces.h"
+#include "deck/schema.h"
+
+namespace sphgeo {
+
+/// What a boundary needs to place its particles.
+struct Placement {
+  double spacing;    ///< dp, m
+  double thickness;  ///< how deep the wall must be so that no kernel sees its end, m
+  int dimension;
+  Aabb clip{};       ///< region of interest for solids without end; empty: none
+};
+
+/// One wall particle: place and outward unit normal of the solid (towards the fluid).
+struct WallPoint {
+  Vec3 position;
+  Vec3 normal;
+};
+
+/// How a wall acts on the tangential motion of the water.
+enum class Slip { no_slip, free_slip };
+
+/// Base of all boundaries that are made of wall particles (paper 3.2.3, last paragraph).
+struct WallBoundary : BoundarySpec {
+  std::string slip = "no_slip";
+  std::optional<Motion> motion;
+
+  /// The wall particles at t = 0, in a fixed order.
+  virtual std::vector<WallPoint> points(const Placement&) const = 0;
+  /// The solid as a shape, for checks and pictures; null when it has none.
+  virtual std::shared_ptr<const Shape> solid(const Placement&) const = 0;
+
+  Slip slip_kind() const { return slip == "no_slip" ? Slip::no_slip : Slip::free_slip; }
+};
+
+/// Declares the keys that all wall boundaries share.
+template <class B>
+void declare_wall_keys(Schema<B>& s) {
+  s.optional("slip", &B::slip, unit::none, "whether water sticks to the wall or slides along it")
+      .choices({"no_slip", "free_slip"});
+  s.optional("motion", &B::motion, unit::none, "prescribed motion; a boundary without one rests");
+}
+
+}  // namespace sphgeo

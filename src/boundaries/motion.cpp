@@ -1,0 +1,108 @@
+#include "boundaries/motion.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/csv_table.h"
+
+namespace sphgeo {
+namespace {
+
+// Small against any motion an engineer prescribes, large enough that the second difference of a
+// smooth formula keeps eight digits.
+constexpr double difference_step = 1e-4;
+
+// Cubic Hermite interpolation with finite-difference slopes: a table then has a continuous velocity.
+double interpolate(const std::vector<double>& t, const std::vector<double>& y, double at) {
+  if (at <= t.front()) return y.front();
+  if (at >= t.back()) return y.back();
+  const auto k = static_cast<std::size_t>(std::upper_bound(t.begin(), t.end(), at) - t.begin()) - 1;
+  const auto slope = [&](std::size_t i) {
+    const std::size_t lo = i == 0 ? 0 : i - 1, hi = std::min(i + 1, t.size() - 1);
+    return (y[hi] - y[lo]) / (t[hi] - t[lo]);
+  };
+  const double dt = t[k + 1] - t[k], s = (at - t[k]) / dt;
+  const double s2 = s * s, s3 = s2 * s;
+  return (2 * s3 - 3 * s2 + 1) * y[k] + (s3 - 2 * s2 + s) * dt * slope(k) + (3 * s2 - 2 * s3) * y[k + 1] +
+         (s3 - s2) * dt * slope(k + 1);
+}
+
+}  // namespace
+
+Schema<Motion> Motion::schema() {
+  Schema<Motion> s("motion", "prescribed rigid motion of a boundary");
+  s.optional("displacement", &Motion::displacement, unit::length, "displacement as formulas of t");
+  s.optional("angle", &Motion::angle, unit::angle, "rotation angle as a formula of t");
+  s.optional("axis", &Motion::axis, unit::none, "axis of the rotation; y turns the x-z plane").keep_y();
+  s.optional("center", &Motion::center, unit::length, "a point on the axis of the rotation");
+  s.optional("table", &Motion::table, unit::none, "CSV file with a column t and any of x, y, z, angle (SI), added to the formulas");
+  s.optional("from", &Motion::from, unit::time, "the boundary rests before this time");
+  s.optional("until", &Motion::until, unit::time, "the boundary rests after this time");
+  s.check([](Motion& m, CheckContext& c) {
+    if (!(m.axis.norm() > 0)) c.error("axis", "the axis has no direction", "give a vector that is not zero");
+    else m.axis.normalize();
+    if (m.until && !(*m.until > m.from)) c.error("until", "the motion ends before it begins", "until must be later than from");
+    if (!m.table) return;
+    try {
+      const CsvTable table = read_csv_table(m.table->path);
+      m.times_ = table.numbers("t");
+      if (m.times_.size() < 2 || !std::is_sorted(m.times_.begin(), m.times_.end(), std::less_equal<>()))
+        return c.error("table", "the times of the table must rise", "at least two rows, each later than the one before");
+      const char* names[] = {"x", "y", "z", "angle"};
+      for (std::size_t k = 0; k < 4; ++k)
+        if (table.has(names[k])) m.columns_[k] = table.numbers(names[k]);
+    } catch (const std::exception& e) {
+      c.error("table", e.what(), "a CSV file with a header row t,x,y,z,angle");
+    }
+  });
+  return s;
+}
+
+double Motion::clamp(double t) const {
+  return std::max(from, until ? std::min(t, *until) : t);
+}
+
+Motion::Pose Motion::pose(double t) const {
+  const double at = clamp(t);
+  const Vec3 nowhere = Vec3::Zero();
+  Pose p{{displacement[0](nowhere, at), displacement[1](nowhere, at), displacement[2](nowhere, at)}, angle(nowhere, at)};
+  for (int k = 0; k < 3; ++k)
+    if (!columns_[static_cast<std::size_t>(k)].empty())
+      p.shift[k] += interpolate(times_, columns_[static_cast<std::size_t>(k)], at);
+  if (!columns_[3].empty()) p.angle += interpolate(times_, columns_[3], at);
+  return p;
+}
+
+Vec3 Motion::position(const Vec3& reference, double t) const {
+  const Pose p = pose(t);
+  if (p.angle == 0.0) return reference + p.shift;
+  return center + Eigen::AngleAxisd(p.angle, axis) * (reference - center) + p.shift;
+}
+
+Vec3 Motion::velocity(const Vec3& reference, double t) const {
+  if (!moves_at(t)) return Vec3::Zero();
+  const double d = difference_step;
+  return (position(reference, t + d) - position(reference, t - d)) / (2 * d);
+}
+
+Vec3 Motion::acceleration(const Vec3& reference, double t) const {
+  if (!moves_at(t)) return Vec3::Zero();
+  const double d = difference_step;
+  return (position(reference, t + d) - 2 * position(reference, t) + position(reference, t - d)) / (d * d);
+}
+
+Vec3 Motion::direction(const Vec3& reference, double t) const {
+  const Pose p = pose(t);
+  return p.angle == 0.0 ? reference : Vec3(Eigen::AngleAxisd(p.angle, axis) * reference);
+}
+
+double Motion::max_speed(const Vec3& reference, double end) const {
+  double fastest = 0;
+  constexpr int samples = 1000;
+  for (int k = 0; k <= samples; ++k)
+    fastest = std::max(fastest, velocity(reference, end * k / samples).norm());
+  return fastest;
+}
+
+}  // namespace sphgeo

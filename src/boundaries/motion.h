@@ -1,0 +1,47 @@
+#pragma once
+// Prescribed rigid motion of a boundary: formulas of t, or a table.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "deck/expression.h"
+#include "deck/schema.h"
+
+namespace sphgeo {
+
+/// A rigid motion x(t) = c + R(angle(t)) (X - c) + d(t), from a start time on, frozen after an end.
+struct Motion {
+  std::array<Expression, 3> displacement;  ///< d(t), m
+  Expression angle{0.0};                    ///< rotation angle, rad
+  Vec3 axis = Vec3(0, 1, 0);                ///< axis of the rotation; y turns the x-z plane
+  Vec3 center = Vec3::Zero();               ///< a point on the axis, m
+  std::optional<FilePath> table;            ///< CSV with columns t and any of x, y, z, angle; added to the formulas
+  double from = 0.0;                        ///< the boundary rests before, s
+  std::optional<double> until;              ///< and after, s
+
+  static Schema<Motion> schema();
+
+  /// Where the point that was at `reference` at t = 0 is at time t.
+  Vec3 position(const Vec3& reference, double t) const;
+  Vec3 velocity(const Vec3& reference, double t) const;
+  Vec3 acceleration(const Vec3& reference, double t) const;
+  /// The direction that was `reference` at t = 0.
+  Vec3 direction(const Vec3& reference, double t) const;
+  /// Largest speed of the point over [0, end], sampled.
+  double max_speed(const Vec3& reference, double end) const;
+
+ private:
+  struct Pose {
+    Vec3 shift;
+    double angle;
+  };
+  Pose pose(double t) const;
+  double clamp(double t) const;
+  bool moves_at(double t) const { return t > from && (!until || t < *until); }
+
+  std::vector<double> times_;                  // of the table
+  std::array<std::vector<double>, 4> columns_; // x, y, z, angle
+};
+
+}  // namespace sphgeo

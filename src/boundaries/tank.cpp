@@ -1,0 +1,111 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "boundaries/boundary.h"
+#include "deck/registry.h"
+#include "geometry/shapes.h"
+
+namespace sphgeo {
+namespace {
+
+/// A face of the tank: its name in the deck, axis and side.
+struct Face {
+  const char* name;
+  int axis;
+  bool high;
+};
+constexpr std::array<Face, 6> faces{{{"left", 0, false}, {"right", 0, true}, {"front", 1, false},
+                                     {"back", 1, true}, {"bottom", 2, false}, {"top", 2, true}}};
+
+/// A container: walls around a box, some faces open.
+struct Tank final : WallBoundary {
+  Vec3 min = Vec3::Zero();
+  Vec3 max = Vec3::Zero();
+  std::vector<std::string> open;
+
+  static Schema<Tank> schema() {
+    Schema<Tank> s("tank", "walls around the inside of a box");
+    s.required("min", &Tank::min, unit::length, "lower corner of the inside");
+    s.required("max", &Tank::max, unit::length, "upper corner of the inside");
+    s.optional("open", &Tank::open, unit::none, "faces without a wall (front and back are those across y)")
+        .choices({"left", "right", "front", "back", "bottom", "top"});
+    declare_wall_keys(s);
+    s.check([](Tank& t, CheckContext& c) {
+      for (int k = 0; k < 3; ++k)
+        if (!(k == 1 && c.dimension() == 2) && !(t.max[k] > t.min[k]))
+          c.error("max", std::string("the tank has no extent along ") + "xyz"[k], "max must exceed min in every direction");
+    });
+    return s;
+  }
+
+  bool is_open(int axis, bool high) const {
+    return std::any_of(faces.begin(), faces.end(), [&](const Face& f) {
+      return f.axis == axis && f.high == high && std::find(open.begin(), open.end(), f.name) != open.end();
+    });
+  }
+
+  /// Coordinates of the particles along one axis: the inside evenly divided, so that walls stand
+  /// exactly on the faces whatever the size of the tank, then the layers of the walls.
+  struct Axis {
+    std::vector<double> at;
+    std::vector<bool> outside;
+  };
+  Axis axis(int k, const Placement& p) const {
+    if (k == 1 && p.dimension == 2) return {{0.0}, {false}};
+    Axis a;
+    const int layers = static_cast<int>(std::ceil(p.thickness / p.spacing - 1e-9));
+    const double length = max[k] - min[k];
+    const auto inside = static_cast<Index>(std::max(1.0, std::round(length / p.spacing)));
+    const auto add = [&](double at, bool outside) {
+      a.at.push_back(at);
+      a.outside.push_back(outside);
+    };
+    if (!is_open(k, false))
+      for (int i = layers - 1; i >= 0; --i) add(min[k] - (i + 0.5) * p.spacing, true);
+    for (Index i = 0; i < inside; ++i)
+      add(min[k] + (static_cast<double>(i) + 0.5) * length / static_cast<double>(inside), false);
+    if (!is_open(k, true))
+      for (int i = 0; i < layers; ++i) add(max[k] + (i + 0.5) * p.spacing, true);
+    return a;
+  }
+
+  std::vector<WallPoint> points(const Placement& p) const override {
+    const Axis ax = axis(0, p), ay = axis(1, p), az = axis(2, p);
+    std::vector<WallPoint> wall;
+    for (std::size_t k = 0; k < az.at.size(); ++k)
+      for (std::size_t j = 0; j < ay.at.size(); ++j)
+        for (std::size_t i = 0; i < ax.at.size(); ++i) {
+          if (!ax.outside[i] && !ay.outside[j] && !az.outside[k]) continue;
+          const Vec3 x(ax.at[i], ay.at[j], az.at[k]);
+          Vec3 inner = x.cwiseMax(min).cwiseMin(max);
+          if (p.dimension == 2) inner.y() = 0;
+          wall.push_back({x, (inner - x).normalized()});
+        }
+    return wall;
+  }
+
+  std::shared_ptr<const Shape> solid(const Placement& p) const override {
+    auto outer = std::make_shared<Box>(), inner = std::make_shared<Box>();
+    outer->flat = inner->flat = p.dimension == 2;
+    outer->min = inner->min = min;
+    outer->max = inner->max = max;
+    for (const Face& f : faces) {
+      const bool gap = is_open(f.axis, f.high);
+      // An open face has no wall: the inside sticks out there and the outside does not.
+      Vec3& out = f.high ? outer->max : outer->min;
+      Vec3& in = f.high ? inner->max : inner->min;
+      const double by = f.high ? p.thickness : -p.thickness;
+      (gap ? in : out)[f.axis] += by;
+    }
+    auto solid = std::make_shared<Difference>();
+    solid->flat = p.dimension == 2;
+    solid->of = {outer, inner};
+    return solid;
+  }
+};
+
+const Register<BoundarySpec, Tank> registered{"tank"};
+
+}  // namespace
+}  // namespace sphgeo

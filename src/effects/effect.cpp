@@ -1,0 +1,36 @@
+#include "effects/effect.h"
+
+#include <algorithm>
+
+namespace sphgeo {
+
+const char* stage_name(Stage stage) {
+  switch (stage) {
+    case Stage::reinitialize: return "reinitialize";
+    case Stage::predict: return "predict";
+    case Stage::force: return "force";
+    case Stage::kick: return "kick";
+    case Stage::rate: return "rate";
+    case Stage::correct: return "correct";
+    case Stage::observe: return "observe";
+  }
+  return "";
+}
+
+std::vector<EffectRegistry::Entry>& EffectRegistry::entries() {
+  static std::vector<Entry> list;
+  return list;
+}
+
+const std::vector<EffectRegistry::Entry>& EffectRegistry::all() {
+  // Registration order is the link order, which is nobody's business: sort once, by name.
+  static const std::vector<Entry>& sorted = [] () -> std::vector<Entry>& {
+    auto& list = entries();
+    std::sort(list.begin(), list.end(),
+              [](const Entry& a, const Entry& b) { return a.info.name < b.info.name; });
+    return list;
+  }();
+  return sorted;
+}
+
+}  // namespace sphgeo

@@ -1,0 +1,122 @@
+#pragma once
+// What an effect is: one sum of the paper (or a few that share one walk over the same pairs), the
+// stage of Algorithm 2 it belongs to, and what it reads and writes.
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "particles/fields.h"
+#include "sph/world.h"
+
+namespace sphgeo {
+
+/// The places of Algorithm 2 where effects run, in order.
+enum class Stage {
+  reinitialize,  ///< once per advection step, after the neighbor lists are new (lines 11, 12)
+  predict,       ///< to the middle of the acoustic step (Eq. 96)
+  force,         ///< accelerations at the middle (Eqs. 59, 60)
+  kick,          ///< velocity and place at the end (Eqs. 97, 98)
+  rate,          ///< rates of density with the new velocity (Eq. 58)
+  correct,       ///< density at the end (Eq. 98)
+  observe        ///< only when a probe or a frame is due
+};
+inline constexpr Stage all_stages[] = {Stage::reinitialize, Stage::predict, Stage::force, Stage::kick,
+                                       Stage::rate, Stage::correct, Stage::observe};
+const char* stage_name(Stage stage);
+
+/// read: the value is needed. write: set from scratch. add: summed onto a value that another effect
+/// wrote in the same stage. update: changed in place.
+enum class Access { read, write, add, update };
+
+struct FieldUse {
+  std::string set;
+  const FieldSpec* field;
+  Access access;
+};
+
+struct ListUse {
+  std::string target, source;
+};
+
+struct Needs {
+  std::vector<FieldUse> fields;
+  std::vector<ListUse> lists;
+};
+
+/// What `check --explain`, the time table and the reference page say of an effect.
+struct EffectInfo {
+  std::string name;
+  Stage stage;
+  std::string equations;
+  std::string sentence;
+  /// A supporting effect runs only when something active reads a field that it writes.
+  bool supporting = false;
+};
+
+/// Upper bounds of the two clocks, s.
+struct StepLimits {
+  double advection = std::numeric_limits<double>::infinity();
+  double acoustic = std::numeric_limits<double>::infinity();
+};
+
+template <int Dim>
+class Effect {
+ public:
+  virtual ~Effect() = default;
+  virtual std::string acts_on() const = 0;
+  virtual Needs needs() const = 0;
+  /// Called once, after all fields and lists exist: take references here.
+  virtual void prepare(World<Dim>&) {}
+  virtual void apply(World<Dim>&) = 0;
+  /// Lowers the bounds to what this effect stays stable with.
+  virtual void limit(const World<Dim>&, StepLimits&) const {}
+};
+
+/// An effect's answer to a scene: instances, or none; the sentence says why in both cases.
+template <int Dim>
+struct Binding {
+  std::vector<std::unique_ptr<Effect<Dim>>> effects;
+  std::string because;
+
+  Binding(std::string why_not) : because(std::move(why_not)) {}
+  template <class E>
+  Binding(std::unique_ptr<E> effect, std::string why) : because(std::move(why)) {
+    effects.push_back(std::move(effect));
+  }
+};
+
+/// The registered effects, sorted by name.
+class EffectRegistry {
+ public:
+  struct Entry {
+    EffectInfo info;
+    Binding<2> (*bind2)(const World<2>&);
+    Binding<3> (*bind3)(const World<3>&);
+
+    template <int Dim>
+    Binding<Dim> bind(const World<Dim>& world) const {
+      if constexpr (Dim == 2) return bind2(world);
+      else return bind3(world);
+    }
+  };
+  static const std::vector<Entry>& all();
+
+ private:
+  template <template <int> class>
+  friend class RegisterEffect;
+  static std::vector<Entry>& entries();
+};
+
+/// Self-registration: `static const RegisterEffect<MyEffect> registered;` at the end of the effect's
+/// file. MyEffect needs `static EffectInfo info()` and `static Binding<Dim> bind(const World<Dim>&)`.
+template <template <int> class E>
+class RegisterEffect {
+ public:
+  RegisterEffect() {
+    EffectRegistry::entries().push_back({E<3>::info(), &E<2>::bind, &E<3>::bind});
+  }
+};
+
+}  // namespace sphgeo

@@ -1,0 +1,77 @@
+#pragma once
+// Water against wall particles: one pair function for both directions (Eqs. 73, 74, 76, 77).
+
+#include "effects/water_phase.h"
+
+namespace sphgeo {
+
+/// Slots of a wall's two records; volume and velocity sit where the water has them.
+namespace wall_slot {
+inline constexpr int volume = 3;
+inline constexpr int velocity = 4;
+inline constexpr int no_slip = 7;  ///< 1 = no slip, 0 = free slip
+inline constexpr int normal = 8;   ///< n, outward from the solid
+inline constexpr int push = 12;    ///< max[0, (dv/dt - g) . n] of the wall
+}  // namespace wall_slot
+
+/// One-sided Riemann problem between a water particle and a wall particle.
+///
+/// Dummy pressure. Eq. 73 prints p + rho max[0, (g - a).n (r.n)] with n outward; that is zero under
+/// still water, so the sign of the bracket is turned: it rises when the wall pushes on the water. Along
+/// the wall the print keeps the pressure constant, which removes the wall's half of the vertical
+/// pressure gradient at a side wall, and still water would sink along it. There the momentum equation
+/// of the water itself, grad p = rho (g - dv/dt), carries the pressure along the wall: hydrostatic at
+/// rest, constant in free fall. dv/dt is that of the last acoustic step.
+template <int Dim>
+struct WallPair {
+  Kernel<Dim> kernel;
+  RiemannFlux riemann;
+  double inverse_sound;  ///< 1 / c0
+  double two_eta;
+  double softening;      ///< 0.01 h^2
+
+  WallPair(const WaterConstants& w, double h)
+      : kernel(h), riemann(w), inverse_sound(1 / w.sound_speed), two_eta(2 * w.viscosity), softening(0.01 * h * h) {}
+
+  /// Pressure rise of the wall by the push of Eq. 73, per rho.
+  template <class T>
+  static T rise(const Record<Dim, T, 2>& wall, const T& r_n) {
+    return wall[wall_slot::push] * max(T(0), r_n);
+  }
+
+  /// Force of the wall on the water per unit volume of the water; r = r_water - r_wall.
+  template <class T>
+  LaneVec<Dim, T> force(const Record<Dim, T, 2>& water, const Record<Dim, T, 2>& wall,
+                        const LaneVec<Dim, T>& r, const T& r2) const {
+    const LaneVec<Dim, T> n = wall.vec(wall_slot::normal);
+    const LaneVec<Dim, T> dv = water.vec(water_slot::velocity) - wall.vec(wall_slot::velocity);
+    const T gradient = kernel.dw_over_r(r2) * wall[wall_slot::volume];
+    const T r_n = dot(r, n);
+    const LaneVec<Dim, T> along = r - r_n * n;
+    const T dummy = rise(wall, r_n) - dot(water.vec(water_slot::pull), along);
+    const T pressures = T(2) * water[water_slot::pressure] + water[water_slot::density] * dummy;
+    // v_i - v_wall^d = 2 (v_i - v_wall) along n, with no slip or without.
+    const T dissipation = riemann.dissipation(T(-2) * dot(dv, n));
+    LaneVec<Dim, T> f = (T(-1) * pressures * gradient) * r;
+    f -= (dissipation * gradient * length(r2)) * n;
+    f += (T(two_eta) * T(2) * wall[wall_slot::no_slip] * gradient * r2 / (r2 + T(softening))) * dv;
+    return f;
+  }
+
+  /// Divergence of the velocity at the water, with the Riemann density dissipation (Eq. 58).
+  template <class T>
+  T divergence(const Record<Dim, T>& water, const Record<Dim, T, 2>& wall, const LaneVec<Dim, T>& r,
+               const T& r2) const {
+    const LaneVec<Dim, T> n = wall.vec(wall_slot::normal);
+    const LaneVec<Dim, T> dv = water.vec(water_slot::velocity) - wall.vec(wall_slot::velocity);
+    const T gradient = kernel.dw_over_r(r2) * wall[wall_slot::volume];
+    const T r_n = dot(r, n);
+    const T sticking = wall[wall_slot::no_slip];
+    const T dv_r = sticking * dot(dv, r) + (T(1) - sticking) * dot(dv, n) * r_n;
+    // p_i - p_wall^d without the part along the wall, whose sum vanishes on a flat wall.
+    const T dissipation = T(-1) * rise(wall, r_n) * T(inverse_sound) * length(r2);
+    return (T(2) * dv_r + dissipation) * gradient;
+  }
+};
+
+}  // namespace sphgeo

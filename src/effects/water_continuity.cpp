@@ -1,0 +1,73 @@
+#include "effects/effect.h"
+#include "effects/water_phase.h"
+
+namespace sphgeo {
+namespace {
+
+/// Divergence and density dissipation between two water particles.
+template <int Dim>
+struct ContinuityPair {
+  Kernel<Dim> kernel;
+  double inverse_impedance;  ///< 1 / (rho0 c0)
+
+  template <class T>
+  struct Sums {
+    T divergence{};  ///< with the Riemann dissipation, 1/s
+  };
+
+  template <class T>
+  void operator()(Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T>& j,
+                  const LaneVec<Dim, T>& r, const T& r2) const {
+    using namespace water_slot;
+    const T gradient = kernel.dw_over_r(r2) * j[volume];
+    const T dv_r = dot(i.vec(velocity) - j.vec(velocity), r);
+    // 2 (p_i - p_j) / (2 rho0 c0) dW/dr: the Riemann velocity U* instead of the mean one.
+    const T dissipation = (i[pressure] - j[pressure]) * T(inverse_impedance) * length(r2);
+    sum.divergence += (dv_r + dissipation) * gradient;
+  }
+};
+
+/// Rate of density of the water (Eq. 58 with n^w = 1).
+template <int Dim>
+class WaterContinuity final : public Effect<Dim> {
+ public:
+  static EffectInfo info() {
+    return {"water_continuity", Stage::rate, "Eq. 58", "divergence and Riemann density dissipation between water particles", false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    if (!world.find("water")) return {"there is no water"};
+    return {std::make_unique<WaterContinuity>(), "there is water"};
+  }
+
+  std::string acts_on() const override { return "water"; }
+  Needs needs() const override {
+    return {{{"water", &fields::density, Access::read}, {"water", &fields::density_rate, Access::write}},
+            {{"water", "water"}}};
+  }
+
+  void prepare(World<Dim>& world) override {
+    ParticleSet<Dim>& water = world.set("water");
+    density_ = &water.scalar(fields::density);
+    rate_ = &water.scalar(fields::density_rate);
+  }
+
+  void apply(World<Dim>& world) override {
+    const WaterConstants w = WaterConstants::of(world);
+    const ContinuityPair<Dim> pair{Kernel<Dim>(world.set("water").smoothing_length()), 1 / (w.density * w.sound_speed)};
+    world.with_pair_precision([&](auto number) {
+      const auto& records = world.records("water").template get<decltype(number)>();
+      gather<ContinuityPair<Dim>::template Sums>(
+          world.list("water", "water"), records, records, pair,
+          [&](Index i, const auto& sum) { (*rate_)[i] = (*density_)[i] * sum.divergence; });
+    });
+  }
+
+ private:
+  Field<double>* density_ = nullptr;
+  Field<double>* rate_ = nullptr;
+};
+
+const RegisterEffect<WaterContinuity> registered;
+
+}  // namespace
+}  // namespace sphgeo

@@ -1,0 +1,90 @@
+#include "effects/effect.h"
+#include "effects/water_phase.h"
+
+namespace sphgeo {
+namespace {
+
+/// Pressure and viscosity between two water particles.
+template <int Dim, bool Viscous>
+struct MomentumPair {
+  Kernel<Dim> kernel;
+  RiemannFlux riemann;
+  double two_eta;   ///< eta (n_i + n_j) with n = 1
+  double softening; ///< 0.01 h^2
+
+  template <class T>
+  struct Sums {
+    LaneVec<Dim, T> force{};  ///< per unit volume
+  };
+
+  template <class T>
+  void operator()(Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T>& j,
+                  const LaneVec<Dim, T>& r, const T& r2) const {
+    using namespace water_slot;
+    const LaneVec<Dim, T> dv = i.vec(velocity) - j.vec(velocity);
+    // U_L - U_R = -(v_i - v_j) . e (Eq. 62).
+    const T approach = -(dot(dv, r) * inverse_length(r2));
+    const T gradient = kernel.dw_over_r(r2) * j[volume];
+    const T two_p_star = i[pressure] + j[pressure] + riemann.dissipation(approach);
+    sum.force -= (two_p_star * gradient) * r;
+    if constexpr (Viscous)
+      sum.force += (T(two_eta) * gradient * r2 / (r2 + T(softening))) * dv;
+  }
+};
+
+/// Momentum of the water: pressure by the Riemann flux, and viscosity (Eq. 60 with n^w = 1).
+template <int Dim>
+class WaterMomentum final : public Effect<Dim> {
+ public:
+  static EffectInfo info() {
+    return {"water_momentum", Stage::force, "Eqs. 60-63", "pressure (Riemann) and viscosity between water particles", false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    const ParticleSet<Dim>* water = world.find("water");
+    if (!water) return {"there is no water"};
+    return {std::make_unique<WaterMomentum>(),
+            water->constant("viscosity") > 0 ? "there is water" : "there is water; inviscid: no viscous term"};
+  }
+
+  std::string acts_on() const override { return "water"; }
+  Needs needs() const override {
+    return {{{"water", &fields::density, Access::read}, {"water", &fields::pressure, Access::read},
+             {"water", &fields::acceleration_sum, Access::add}},
+            {{"water", "water"}}};
+  }
+
+  void prepare(World<Dim>& world) override {
+    ParticleSet<Dim>& water = world.set("water");
+    density_ = &water.scalar(fields::density);
+    acceleration_ = &water.vector(fields::acceleration_sum);
+  }
+
+  void apply(World<Dim>& world) override {
+    if (WaterConstants::of(world).viscosity > 0) run<true>(world);
+    else run<false>(world);
+  }
+
+ private:
+  template <bool Viscous>
+  void run(World<Dim>& world) {
+    using Pair = MomentumPair<Dim, Viscous>;
+    const WaterConstants w = WaterConstants::of(world);
+    const double h = world.set("water").smoothing_length();
+    const Pair pair{Kernel<Dim>(h), RiemannFlux(w), 2 * w.viscosity, 0.01 * h * h};
+    world.with_pair_precision([&](auto number) {
+      const auto& records = world.records("water").template get<decltype(number)>();
+      gather<Pair::template Sums>(world.list("water", "water"), records, records, pair,
+                                  [&](Index i, const auto& sum) {
+                                    (*acceleration_)[i] += to_vec(sum.force) / (*density_)[i];
+                                  });
+    });
+  }
+
+  Field<double>* density_ = nullptr;
+  Field<Vec<Dim>>* acceleration_ = nullptr;
+};
+
+const RegisterEffect<WaterMomentum> registered;
+
+}  // namespace
+}  // namespace sphgeo

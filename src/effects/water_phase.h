@@ -1,0 +1,61 @@
+#pragma once
+// What the effects of the water phase share: constants, record layout, the Riemann flux.
+
+#include "sph/gather.h"
+#include "sph/kernel.h"
+#include "sph/world.h"
+
+namespace sphgeo {
+
+/// Constants of the water phase, SI.
+struct WaterConstants {
+  double density;      ///< rho0
+  double sound_speed;  ///< c0
+  double viscosity;    ///< eta
+  double limiter;      ///< xi of Eq. 63
+
+  template <int Dim>
+  static WaterConstants of(const World<Dim>& world) {
+    const ParticleSet<Dim>& water = world.set("water");
+    return {water.constant("density"), water.constant("sound_speed"), water.constant("viscosity"),
+            world.model().numerics.limiter};
+  }
+};
+
+/// Slots of a water record behind the position.
+namespace water_slot {
+inline constexpr int volume = 3;    ///< V (Eq. 27)
+inline constexpr int velocity = 4;  ///< v, Dim numbers
+inline constexpr int pressure = 7;  ///< p (Eq. 26)
+inline constexpr int pull = 8;      ///< g - dv/dt of the last step; in the second record, for walls
+inline constexpr int density = 12;  ///< rho; in the second record
+}  // namespace water_slot
+
+/// Low-dissipation Riemann flux of the water, between equal materials (Eqs. 61-63).
+struct RiemannFlux {
+  double impedance;      ///< rho0 c0
+  double inverse_sound;  ///< 1 / c0
+  double limiter;        ///< xi
+
+  explicit RiemannFlux(const WaterConstants& w)
+      : impedance(w.density * w.sound_speed), inverse_sound(1.0 / w.sound_speed), limiter(w.limiter) {}
+
+  /// Twice the dissipative part of P*: beta rho0 c0 (U_L - U_R), zero when the pair separates.
+  /// With equal densities and sound speeds the limiter of Eq. 63 is min(xi max(U_L - U_R, 0) / c0, 1).
+  template <class T>
+  T dissipation(const T& approach) const {
+    const T closing = max(T(0), approach);
+    const T beta = min(T(limiter * inverse_sound) * closing, T(1));
+    return beta * T(impedance) * closing;
+  }
+};
+
+/// The sums of a gather as a vector of the scene.
+template <int Dim>
+Vec<Dim> to_vec(const LaneVec<Dim, double>& a) {
+  Vec<Dim> v;
+  for (int k = 0; k < Dim; ++k) v[k] = a[k];
+  return v;
+}
+
+}  // namespace sphgeo

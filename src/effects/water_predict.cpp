@@ -1,0 +1,72 @@
+#include "core/parallel.h"
+#include "effects/effect.h"
+#include "effects/water_phase.h"
+
+namespace sphgeo {
+namespace {
+
+/// Density and place at the middle of the acoustic step, pressure and volume there (Eqs. 26, 27, 96).
+template <int Dim>
+class WaterPredict final : public Effect<Dim> {
+ public:
+  static EffectInfo info() {
+    return {"water_predict", Stage::predict, "Eqs. 26, 27, 96", "density, place, pressure and volume at the middle of the step", false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    if (!world.find("water")) return {"there is no water"};
+    return {std::make_unique<WaterPredict>(), "there is water"};
+  }
+
+  std::string acts_on() const override { return "water"; }
+  Needs needs() const override {
+    return {{{"water", &fields::density, Access::update},
+             {"water", &fields::position, Access::update},
+             {"water", &fields::density_rate, Access::read},
+             {"water", &fields::velocity, Access::read},
+             {"water", &fields::mass, Access::read},
+             {"water", &fields::pressure, Access::write},
+             {"water", &fields::volume, Access::write}},
+            {}};
+  }
+
+  void prepare(World<Dim>& world) override {
+    water_ = &world.set("water");
+    world.records("water");
+  }
+
+  void apply(World<Dim>& world) override {
+    const WaterConstants w = WaterConstants::of(world);
+    const double half = 0.5 * world.clock.dt_acoustic, c2 = w.sound_speed * w.sound_speed;
+    auto& rho = water_->scalar(fields::density);
+    auto& x = water_->vector(fields::position);
+    auto& p = water_->scalar(fields::pressure);
+    auto& volume = water_->scalar(fields::volume);
+    const auto& rate = water_->scalar(fields::density_rate);
+    const auto& v = water_->vector(fields::velocity);
+    const auto& m = water_->scalar(fields::mass);
+    const bool repack = !world.frozen_geometry();
+    world.with_pair_precision([&](auto number) {
+      using T = decltype(number);
+      auto& records = world.records("water").template get<T>();
+      parallel_for(water_->size(), [&](Index i) {
+        rho[i] += half * rate[i];
+        x[i] += half * v[i];
+        p[i] = c2 * (rho[i] - w.density);
+        volume[i] = m[i] / rho[i];
+        T* slot = records[i];
+        slot[water_slot::volume] = static_cast<T>(volume[i]);
+        slot[water_slot::pressure] = static_cast<T>(p[i]);
+        for (int k = 0; k < Dim; ++k) slot[water_slot::velocity + k] = static_cast<T>(v[i][k]);
+        if (repack) records.set_position(i, x[i]);
+      });
+    });
+  }
+
+ private:
+  ParticleSet<Dim>* water_ = nullptr;
+};
+
+const RegisterEffect<WaterPredict> registered;
+
+}  // namespace
+}  // namespace sphgeo

@@ -1,0 +1,55 @@
+#include "core/parallel.h"
+#include "effects/effect.h"
+#include "effects/water_phase.h"
+
+namespace sphgeo {
+namespace {
+
+/// Pressure and volume of the state at hand, for whoever looks at it between two steps.
+template <int Dim>
+class WaterPressure final : public Effect<Dim> {
+ public:
+  static EffectInfo info() {
+    return {"water_pressure", Stage::observe, "Eqs. 26, 27", "pressure and volume at the time of a probe or frame", true};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    if (!world.find("water")) return {"there is no water"};
+    return {std::make_unique<WaterPressure>(), "there is water"};
+  }
+
+  std::string acts_on() const override { return "water"; }
+  Needs needs() const override {
+    return {{{"water", &fields::density, Access::read}, {"water", &fields::mass, Access::read},
+             {"water", &fields::pressure, Access::write}, {"water", &fields::volume, Access::write}}, {}};
+  }
+  void prepare(World<Dim>& world) override { water_ = &world.set("water"); }
+  void apply(World<Dim>& world) override {
+    const WaterConstants w = WaterConstants::of(world);
+    auto& p = water_->scalar(fields::pressure);
+    auto& volume = water_->scalar(fields::volume);
+    const auto& rho = water_->scalar(fields::density);
+    const auto& m = water_->scalar(fields::mass);
+    const auto& v = water_->vector(fields::velocity);
+    world.with_pair_precision([&](auto number) {
+      using T = decltype(number);
+      auto& records = world.records("water").template get<T>();
+      parallel_for(water_->size(), [&](Index i) {
+        p[i] = w.sound_speed * w.sound_speed * (rho[i] - w.density);
+        volume[i] = m[i] / rho[i];
+        // Pair sums of the observation, such as the force on a wall, read the records.
+        T* slot = records[i];
+        slot[water_slot::volume] = static_cast<T>(volume[i]);
+        slot[water_slot::pressure] = static_cast<T>(p[i]);
+        for (int k = 0; k < Dim; ++k) slot[water_slot::velocity + k] = static_cast<T>(v[i][k]);
+      });
+    });
+  }
+
+ private:
+  ParticleSet<Dim>* water_ = nullptr;
+};
+
+const RegisterEffect<WaterPressure> registered;
+
+}  // namespace
+}  // namespace sphgeo

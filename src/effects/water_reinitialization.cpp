@@ -1,0 +1,173 @@
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "effects/effect.h"
+#include "effects/water_phase.h"
+
+namespace sphgeo {
+namespace {
+
+/// The sums that say how the particles lie: number density, its gradient, divergence of position.
+template <int Dim>
+struct ArrangementPair {
+  Kernel<Dim> kernel;
+
+  template <class T>
+  struct Sums {
+    T number{};                    ///< sum of W V
+    LaneVec<Dim, T> gradient{};    ///< sum of grad W V
+    T moment[Dim][Dim] = {};       ///< sum of r (x) grad W V
+  };
+
+  template <class T, int N, int M>
+  void operator()(Sums<T>& sum, const Record<Dim, T, N>&, const Record<Dim, T, M>& j,
+                  const LaneVec<Dim, T>& r, const T& r2) const {
+    const T volume = j[water_slot::volume];
+    const T slope = kernel.dw_over_r(r2) * volume;
+    sum.number += kernel.w(r2) * volume;
+    sum.gradient += slope * r;
+    for (int a = 0; a < Dim; ++a)
+      for (int b = a; b < Dim; ++b) sum.moment[a][b] += slope * r[a] * r[b];
+  }
+};
+
+template <int Dim>
+struct Arrangement {
+  double number;
+  Vec<Dim> gradient;
+  Eigen::Matrix<double, Dim, Dim> moment;
+
+  void add(const typename ArrangementPair<Dim>::template Sums<double>& s) {
+    number += s.number;
+    gradient += to_vec(s.gradient);
+    for (int a = 0; a < Dim; ++a)
+      for (int b = a; b < Dim; ++b) {
+        moment(a, b) += s.moment[a][b];
+        if (b != a) moment(b, a) += s.moment[a][b];
+      }
+  }
+};
+
+/// Once per advection step, in one walk over the pairs: the free surface by the divergence of
+/// position, the density by summation (Algorithm 2, line 11) and the transport displacement (Eq. 87).
+template <int Dim>
+class WaterReinitialization final : public Effect<Dim> {
+ public:
+  static EffectInfo info() {
+    return {"water_reinitialization", Stage::reinitialize, "Algorithm 2 line 11, Eq. 87",
+            "free surface, density by summation, transport displacement", false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    if (!world.find("water")) return {"there is no water"};
+    const Numerics& n = world.model().numerics;
+    if (n.density_reinitialization == "none" && !n.transport_velocity)
+      return {"numerics switches off both density_reinitialization and transport_velocity"};
+    return {std::make_unique<WaterReinitialization>(world.find("walls") != nullptr), "there is water"};
+  }
+
+  explicit WaterReinitialization(bool walls) : has_walls_(walls) {}
+
+  std::string acts_on() const override { return "water"; }
+  Needs needs() const override {
+    Needs n{{{"water", &fields::mass, Access::read},
+             {"water", &fields::density, Access::update},
+             {"water", &fields::position, Access::update},
+             {"water", &fields::surface, Access::write}},
+            {{"water", "water"}}};
+    if (has_walls_) {
+      n.fields.push_back({"walls", &fields::volume, Access::read});
+      n.lists.push_back({"water", "walls"});
+    }
+    return n;
+  }
+
+  void prepare(World<Dim>& world) override {
+    water_ = &world.set("water");
+    lattice_ = lattice_number(water_->spacing(), Kernel<Dim>(water_->smoothing_length()));
+  }
+
+  void apply(World<Dim>& world) override {
+    sums_.assign(static_cast<std::size_t>(water_->size()),
+                 {0, Vec<Dim>::Zero(), Eigen::Matrix<double, Dim, Dim>::Zero()});
+    sum_pairs(world);
+    update(world);
+    if (world.model().numerics.transport_velocity) world.pack_positions(*water_);
+  }
+
+ private:
+  // Sum of W dp^Dim over a lattice: what a perfect arrangement gives instead of 1.
+  static double lattice_number(double dp, const Kernel<Dim>& kernel) {
+    const int reach = static_cast<int>(std::ceil(kernel.support() / dp));
+    double sum = 0;
+    for (int i = -reach; i <= reach; ++i)
+      for (int j = -reach; j <= reach; ++j)
+        for (int k = Dim == 3 ? -reach : 0; k <= (Dim == 3 ? reach : 0); ++k)
+          sum += kernel.w(dp * dp * (i * i + j * j + k * k)) * std::pow(dp, Dim);
+    return sum;
+  }
+
+  void sum_pairs(World<Dim>& world) {
+    const double rho0 = water_->constant("density");
+    const auto& m = water_->scalar(fields::mass);
+    const ArrangementPair<Dim> pair{Kernel<Dim>(water_->smoothing_length())};
+    world.with_pair_precision([&](auto number) {
+      using T = decltype(number);
+      using Pair = ArrangementPair<Dim>;
+      auto& records = world.records("water").template get<T>();
+      // The volume at rest, so that compression does not feed back on the arrangement.
+      parallel_for(water_->size(), [&](Index i) {
+        records[i][water_slot::volume] = static_cast<T>(m[i] / rho0);
+      });
+      const auto keep = [&](Index i, const auto& s) { sums_[static_cast<std::size_t>(i)].add(s); };
+      gather<Pair::template Sums>(world.list("water", "water"), records, records, pair, keep);
+      if (has_walls_)
+        gather<Pair::template Sums>(world.list("water", "walls"), records,
+                                    world.records("walls").template get<T>(), pair, keep);
+    });
+  }
+
+  void update(const World<Dim>& world) {
+    const Numerics& n = world.model().numerics;
+    const double rho0 = water_->constant("density");
+    const double h = water_->smoothing_length();
+    const double self = Kernel<Dim>(h).w(0.0);
+    const bool summation = n.density_reinitialization == "summation";
+    const double shift = n.transport_velocity ? 2 * n.transport_coefficient * h * h : 0.0;
+    auto& rho = water_->scalar(fields::density);
+    auto& x = water_->vector(fields::position);
+    auto& surface = water_->tag(fields::surface);
+    const auto& m = water_->scalar(fields::mass);
+    parallel_for(water_->size(), [&](Index i) {
+      const Arrangement<Dim>& s = sums_[static_cast<std::size_t>(i)];
+      // The divergence of position is Dim in the bulk; three quarters of it tell the surface.
+      surface[i] = -s.moment.trace() < 0.75 * Dim ? 1 : 0;
+      if (summation) {
+        const double summed = rho0 * (s.number + self * m[i] / rho0) / lattice_;
+        // A sum that falls short is a surface or a splash, not a rarefaction: it keeps its density,
+        // up to the factor by which rho exceeds rho0.
+        rho[i] = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
+      }
+      if (shift > 0) x[i] += displacement(s, surface[i] != 0, shift);
+    });
+  }
+
+  // Eq. 87 with the sign that leads away from crowded places; on the surface only along it.
+  static Vec<Dim> displacement(const Arrangement<Dim>& s, bool surface, double factor) {
+    if (!surface) return -factor * s.gradient;
+    const double det = s.moment.determinant();
+    if (std::abs(det) < 1e-3) return Vec<Dim>::Zero();  // a lonely particle has no arrangement
+    const Vec<Dim> normal = (s.moment.inverse() * s.gradient).normalized();
+    return -factor * (s.gradient - normal.dot(s.gradient) * normal);
+  }
+
+  bool has_walls_;
+  ParticleSet<Dim>* water_ = nullptr;
+  double lattice_ = 1;
+  std::vector<Arrangement<Dim>> sums_;
+};
+
+const RegisterEffect<WaterReinitialization> registered;
+
+}  // namespace
+}  // namespace sphgeo

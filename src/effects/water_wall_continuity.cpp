@@ -1,0 +1,62 @@
+#include "effects/effect.h"
+#include "effects/wall_pair.h"
+
+namespace sphgeo {
+namespace {
+
+template <int Dim>
+struct WallDivergence {
+  WallPair<Dim> wall;
+
+  template <class T>
+  struct Sums {
+    T divergence{};
+  };
+  template <class T>
+  void operator()(Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T, 2>& j,
+                  const LaneVec<Dim, T>& r, const T& r2) const {
+    sum.divergence += wall.divergence(i, j, r, r2);
+  }
+};
+
+/// What walls add to the rate of density (Eq. 58 with the mirrored velocity of Eq. 95).
+template <int Dim>
+class WaterWallContinuity final : public Effect<Dim> {
+ public:
+  static EffectInfo info() {
+    return {"water_wall_continuity", Stage::rate, "Eqs. 58, 95", "divergence and density dissipation against walls", false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    if (!world.find("water") || !world.find("walls")) return {"there is no water, or there are no walls"};
+    return {std::make_unique<WaterWallContinuity>(), "there are water and walls"};
+  }
+
+  std::string acts_on() const override { return "water near walls"; }
+  Needs needs() const override {
+    return {{{"water", &fields::density, Access::read}, {"water", &fields::density_rate, Access::add},
+             {"walls", &fields::volume, Access::read}},
+            {{"water", "walls"}}};
+  }
+  void prepare(World<Dim>& world) override { water_ = &world.set("water"); }
+
+  void apply(World<Dim>& world) override {
+    const WallDivergence<Dim> pair{WallPair<Dim>(WaterConstants::of(world), water_->smoothing_length())};
+    const auto& rho = water_->scalar(fields::density);
+    auto& rate = water_->scalar(fields::density_rate);
+    world.with_pair_precision([&](auto number) {
+      using T = decltype(number);
+      gather<WallDivergence<Dim>::template Sums>(
+          world.list("water", "walls"), world.records("water").template get<T>(),
+          with(world.records("walls", 0).template get<T>(), world.records("walls", 1).template get<T>()), pair,
+          [&](Index i, const auto& sum) { rate[i] += rho[i] * sum.divergence; });
+    });
+  }
+
+ private:
+  ParticleSet<Dim>* water_ = nullptr;
+};
+
+const RegisterEffect<WaterWallContinuity> registered;
+
+}  // namespace
+}  // namespace sphgeo

@@ -1,0 +1,85 @@
+#include "effects/effect.h"
+#include "effects/wall_pair.h"
+
+namespace sphgeo {
+namespace {
+
+template <int Dim>
+struct WallForceOnWater {
+  WallPair<Dim> wall;
+
+  template <class T>
+  struct Sums {
+    LaneVec<Dim, T> force{};
+  };
+  template <class T>
+  void operator()(Sums<T>& sum, const Record<Dim, T, 2>& i, const Record<Dim, T, 2>& j,
+                  const LaneVec<Dim, T>& r, const T& r2) const {
+    sum.force += wall.force(i, j, r, r2);
+  }
+};
+
+/// Pressure and friction of walls on the water by a one-sided Riemann problem (Eqs. 73, 74).
+template <int Dim>
+class WaterWallForce final : public Effect<Dim> {
+ public:
+  static EffectInfo info() {
+    return {"water_wall_force", Stage::force, "Eqs. 73, 74", "pressure (one-sided Riemann) and friction of walls on the water", false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    if (!world.find("water") || !world.find("walls")) return {"there is no water, or there are no walls"};
+    return {std::make_unique<WaterWallForce>(), "there are water and walls"};
+  }
+
+  std::string acts_on() const override { return "water near walls"; }
+  Needs needs() const override {
+    return {{{"water", &fields::density, Access::read}, {"water", &fields::pressure, Access::read},
+             {"water", &fields::acceleration, Access::read},
+             {"water", &fields::acceleration_sum, Access::add}, {"walls", &fields::volume, Access::read}},
+            {{"water", "walls"}}};
+  }
+  void prepare(World<Dim>& world) override {
+    water_ = &world.set("water");
+    world.records("water", 1);
+  }
+
+  void apply(World<Dim>& world) override {
+    const WaterConstants w = WaterConstants::of(world);
+    const WallForceOnWater<Dim> pair{WallPair<Dim>(w, water_->smoothing_length())};
+    const auto& rho = water_->scalar(fields::density);
+    auto& sum_of_forces = water_->vector(fields::acceleration_sum);
+    const NeighborList& list = world.list("water", "walls");
+    world.with_pair_precision([&](auto number) {
+      using T = decltype(number);
+      pack_pull(world, list, world.records("water", 1).template get<T>());
+      gather<WallForceOnWater<Dim>::template Sums>(
+          list, with(world.records("water", 0).template get<T>(), world.records("water", 1).template get<T>()),
+          with(world.records("walls", 0).template get<T>(), world.records("walls", 1).template get<T>()), pair,
+          [&](Index i, const auto& sum) { sum_of_forces[i] += to_vec(sum.force) / rho[i]; });
+    });
+  }
+
+ private:
+  // g - dv/dt and the density, of the water that a wall can reach.
+  template <class T>
+  void pack_pull(const World<Dim>& world, const NeighborList& list, Records<Dim, T>& records) {
+    const Vec<Dim> g = world.gravity();
+    const auto& a = water_->vector(fields::acceleration);
+    const auto& rho = water_->scalar(fields::density);
+    const auto blocks = list.blocks();
+    parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
+      for (const std::uint32_t i : blocks[static_cast<std::size_t>(b)].targets) {
+        T* slot = records[i] - record_size;
+        for (int k = 0; k < Dim; ++k) slot[water_slot::pull + k] = static_cast<T>(g[k] - a[i][k]);
+        slot[water_slot::density] = static_cast<T>(rho[i]);
+      }
+    });
+  }
+
+  ParticleSet<Dim>* water_ = nullptr;
+};
+
+const RegisterEffect<WaterWallForce> registered;
+
+}  // namespace
+}  // namespace sphgeo

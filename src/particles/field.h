@@ -1,0 +1,68 @@
+#pragma once
+// One array of a particle set, with a lifetime that says whether it is saved.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+#include "deck/unit.h"
+
+namespace sphgeo {
+
+/// state: evolves and is saved. reference: fixed at t = 0 and saved. derived: recomputed, never saved.
+enum class Lifetime { state, reference, derived };
+
+/// What the values of a field are.
+enum class FieldType { scalar, vector, tag, identity };
+
+/// The one description of a field: its name stands in decks, frames, plans and error texts.
+struct FieldSpec {
+  const char* name;
+  FieldType type;
+  Lifetime lifetime;
+  Unit unit;
+  const char* sentence;
+};
+
+/// Untyped face of a field, for the code that sorts, removes, saves and writes all of them alike.
+class FieldBase {
+ public:
+  explicit FieldBase(const FieldSpec& spec) : spec_(&spec) {}
+  virtual ~FieldBase() = default;
+  const FieldSpec& spec() const { return *spec_; }
+  virtual void resize(Index n) = 0;
+  /// New element k is old element order[k]; order may be shorter than the field.
+  virtual void permute(const std::vector<std::uint32_t>& order) = 0;
+  virtual std::size_t bytes() const = 0;
+
+ private:
+  const FieldSpec* spec_;
+};
+
+template <class T>
+class Field final : public FieldBase {
+ public:
+  using FieldBase::FieldBase;
+
+  T& operator[](Index i) { return values_[static_cast<std::size_t>(i)]; }
+  const T& operator[](Index i) const { return values_[static_cast<std::size_t>(i)]; }
+  Index size() const { return static_cast<Index>(values_.size()); }
+  T* data() { return values_.data(); }
+  const T* data() const { return values_.data(); }
+
+  void resize(Index n) override { values_.resize(static_cast<std::size_t>(n), zero()); }
+  void permute(const std::vector<std::uint32_t>& order) override;
+  std::size_t bytes() const override { return (values_.capacity() + spare_.capacity()) * sizeof(T); }
+
+ private:
+  static T zero() {
+    if constexpr (std::is_arithmetic_v<T>) return T{0};
+    else return T::Zero();
+  }
+  std::vector<T> values_;
+  std::vector<T> spare_;  // second buffer of the permutation, kept to avoid allocating at every sort
+};
+
+}  // namespace sphgeo

@@ -1,0 +1,38 @@
+#pragma once
+// The fields that effects, probes and frames name. Each stands here once.
+
+#include "particles/field.h"
+
+namespace sphgeo::fields {
+
+using enum FieldType;
+using enum Lifetime;
+
+inline constexpr FieldSpec id{"id", FieldType::identity, state, unit::none, "number of the particle, kept for life"};
+inline constexpr FieldSpec part{"part", tag, state, unit::none, "index of the body or boundary of the deck"};
+inline constexpr FieldSpec position{"position", vector, state, unit::length, "place of the particle"};
+inline constexpr FieldSpec velocity{"velocity", vector, state, unit::speed, "velocity"};
+inline constexpr FieldSpec acceleration{"acceleration", vector, state, unit::acceleration,
+                                        "acceleration of the last acoustic step"};
+inline constexpr FieldSpec acceleration_sum{"acceleration_sum", vector, derived, unit::acceleration,
+                                            "sum of all forces by mass, of the running acoustic step"};
+inline constexpr FieldSpec mass{"mass", scalar, reference, unit::mass, "mass; kg per metre of depth in 2D"};
+inline constexpr FieldSpec density{"density", scalar, state, unit::density, "intrinsic density of the water"};
+inline constexpr FieldSpec density_rate{"density_rate", scalar, state, unit::none,
+                                        "rate of change of the density, Eq. 58"};
+inline constexpr FieldSpec pressure{"pressure", scalar, derived, unit::pressure, "pressure, Eq. 26"};
+inline constexpr FieldSpec volume{"volume", scalar, derived, unit::volume, "volume; an area in 2D, Eq. 27"};
+inline constexpr FieldSpec surface{"surface", tag, derived, unit::none, "1 on the free surface"};
+inline constexpr FieldSpec normal{"normal", vector, state, unit::none, "outward normal of a wall"};
+inline constexpr FieldSpec reference_position{"reference_position", vector, reference, unit::length, "place at t = 0"};
+inline constexpr FieldSpec reference_normal{"reference_normal", vector, reference, unit::none, "normal at t = 0"};
+inline constexpr FieldSpec no_slip{"no_slip", scalar, reference, unit::none, "1 where water sticks to the wall, 0 where it slides"};
+inline constexpr FieldSpec wall_force{"wall_force", vector, derived, unit::force, "force of the water on a wall particle"};
+
+/// All of them, for lookups by name.
+inline constexpr const FieldSpec* all[] = {&id, &part, &position, &velocity, &acceleration,
+                                           &acceleration_sum, &mass,
+                                           &density, &density_rate, &pressure, &volume, &surface,
+                                           &normal, &reference_position, &reference_normal, &no_slip, &wall_force};
+
+}  // namespace sphgeo::fields

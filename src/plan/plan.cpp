@@ -1,0 +1,177 @@
+#include "plan/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+#include <stdexcept>
+
+namespace sphgeo {
+namespace {
+
+bool produces(Access a) { return a == Access::write; }
+bool reads(Access a) { return a == Access::read || a == Access::update; }
+
+bool same(const FieldUse& a, const FieldUse& b) { return a.set == b.set && a.field == b.field; }
+
+// Order within a stage: write before add, both before update, all before read.
+int rank(Access a) {
+  switch (a) {
+    case Access::write: return 0;
+    case Access::add: return 1;
+    case Access::update: return 2;
+    case Access::read: return 3;
+  }
+  return 3;
+}
+
+bool must_precede(const Needs& first, const Needs& second) {
+  for (const FieldUse& a : first.fields)
+    for (const FieldUse& b : second.fields)
+      if (same(a, b) && rank(a.access) < rank(b.access)) return true;
+  return false;
+}
+
+}  // namespace
+
+template <int Dim>
+Plan<Dim>::Plan(World<Dim>& world, const std::vector<Wish>& wishes) : world_(world) {
+  bind(wishes);
+  for (auto& e : effects_) {
+    for (const FieldUse& use : e.needs.fields) world_.set(use.set).require(*use.field);
+    for (const ListUse& list : e.needs.lists) world_.require_list(list.target, list.source);
+  }
+  check_producers(wishes);
+  order();
+  for (auto& e : effects_) e.effect->prepare(world_);
+}
+
+template <int Dim>
+void Plan<Dim>::bind(const std::vector<Wish>& wishes) {
+  std::vector<PlannedEffect<Dim>> supporting;
+  for (const auto& entry : EffectRegistry::all()) {
+    Binding<Dim> binding = entry.template bind<Dim>(world_);
+    if (binding.effects.empty()) unused_.push_back({entry.info.name, binding.because});
+    for (auto& effect : binding.effects) {
+      PlannedEffect<Dim> planned{entry.info, std::move(effect), {}, binding.because, 0, 0};
+      planned.needs = planned.effect->needs();
+      (entry.info.supporting ? supporting : effects_).push_back(std::move(planned));
+    }
+  }
+  // Pull in supporting effects until nothing changes.
+  const auto wanted_by = [&](const PlannedEffect<Dim>& candidate) -> std::string {
+    for (const FieldUse& made : candidate.needs.fields) {
+      if (!produces(made.access)) continue;
+      for (const auto& e : effects_) {
+        // What is made for observers serves no one but observers.
+        if (candidate.info.stage == Stage::observe && e.info.stage != Stage::observe) continue;
+        for (const FieldUse& use : e.needs.fields)
+          if (same(made, use) && reads(use.access)) return "effect " + e.info.name;
+      }
+      for (const Wish& w : wishes)
+        if (w.set == made.set && w.field == made.field->name) return w.who;
+    }
+    return {};
+  };
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (auto it = supporting.begin(); it != supporting.end(); ++it) {
+      const std::string who = wanted_by(*it);
+      if (who.empty()) continue;
+      it->because = "asked for by " + who;
+      effects_.push_back(std::move(*it));
+      supporting.erase(it);
+      changed = true;
+      break;
+    }
+  }
+  for (const auto& e : supporting)
+    unused_.push_back({e.info.name, "no effect, probe or frame reads what it computes"});
+}
+
+template <int Dim>
+void Plan<Dim>::check_producers(const std::vector<Wish>& wishes) const {
+  for (std::size_t k = 0; k < effects_.size(); ++k) {
+    const auto& e = effects_[k];
+    for (const FieldUse& use : e.needs.fields) {
+      std::vector<std::string> writers, same_stage;
+      for (const auto& other : effects_)
+        for (const FieldUse& w : other.needs.fields)
+          if (same(w, use) && produces(w.access)) {
+            writers.push_back(other.info.name);
+            if (other.info.stage == e.info.stage) same_stage.push_back(other.info.name);
+          }
+      const bool derived = use.field->lifetime == Lifetime::derived;
+      if (derived && !produces(use.access) && writers.empty())
+        throw std::logic_error(fmt::format("plan: effect '{}' needs field '{}' of set '{}', which no effect computes",
+                                           e.info.name, use.field->name, use.set));
+      if (use.access == Access::add && same_stage.empty())
+        throw std::logic_error(fmt::format("plan: effect '{}' adds to field '{}' of set '{}', which no effect of stage '{}' sets first",
+                                           e.info.name, use.field->name, use.set, stage_name(e.info.stage)));
+      if (produces(use.access) && same_stage.size() > 1)
+        throw std::logic_error(fmt::format("plan: effects '{}' and '{}' both set field '{}' of set '{}' in stage '{}'",
+                                           same_stage[0], same_stage[1], use.field->name, use.set, stage_name(e.info.stage)));
+    }
+  }
+  for (const Wish& w : wishes) {
+    ParticleSet<Dim>& set = world_.set(w.set);
+    const auto it = set.fields().find(w.field);
+    if (it == set.fields().end())
+      throw std::logic_error(fmt::format("plan: {} asks for field '{}' of set '{}', which no effect computes",
+                                         w.who, w.field, w.set));
+  }
+}
+
+template <int Dim>
+void Plan<Dim>::order() {
+  std::vector<PlannedEffect<Dim>> left = std::move(effects_), sorted;
+  std::sort(left.begin(), left.end(), [](const auto& a, const auto& b) {
+    if (a.info.stage != b.info.stage) return a.info.stage < b.info.stage;
+    if (a.info.name != b.info.name) return a.info.name < b.info.name;
+    return a.effect->acts_on() < b.effect->acts_on();
+  });
+  while (!left.empty()) {
+    const Stage stage = left.front().info.stage;
+    auto ready = left.end();
+    for (auto it = left.begin(); it != left.end() && it->info.stage == stage; ++it) {
+      bool free = true;
+      for (auto other = left.begin(); other != left.end() && other->info.stage == stage; ++other)
+        if (other != it && must_precede(other->needs, it->needs)) free = false;
+      if (free) {
+        ready = it;
+        break;
+      }
+    }
+    if (ready == left.end())
+      throw std::logic_error(fmt::format("plan: the effects of stage '{}' wait for each other, beginning with '{}'",
+                                         stage_name(stage), left.front().info.name));
+    sorted.push_back(std::move(*ready));
+    left.erase(ready);
+  }
+  effects_ = std::move(sorted);
+}
+
+template <int Dim>
+void Plan<Dim>::run(Stage stage) {
+  using clock = std::chrono::steady_clock;
+  for (auto& e : effects_) {
+    if (e.info.stage != stage) continue;
+    const auto start = clock::now();
+    e.effect->apply(world_);
+    e.seconds += std::chrono::duration<double>(clock::now() - start).count();
+    ++e.calls;
+  }
+}
+
+template <int Dim>
+StepLimits Plan<Dim>::limits() const {
+  StepLimits limits;
+  for (const auto& e : effects_) e.effect->limit(world_, limits);
+  return limits;
+}
+
+template class Plan<2>;
+template class Plan<3>;
+
+}  // namespace sphgeo

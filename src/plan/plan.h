@@ -1,0 +1,62 @@
+#pragma once
+// The planner: what is present and what is asked decide which effects run, in which order, with
+// which fields and neighbor lists. A tiny make.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "effects/effect.h"
+
+namespace sphgeo {
+
+/// A field that a probe or a frame wants.
+struct Wish {
+  std::string set, field, who;
+};
+
+/// One active effect with its clockwork.
+template <int Dim>
+struct PlannedEffect {
+  EffectInfo info;
+  std::unique_ptr<Effect<Dim>> effect;
+  Needs needs;
+  std::string because;
+  long calls = 0;
+  double seconds = 0;
+};
+
+struct UnusedEffect {
+  std::string name, because;
+};
+
+template <int Dim>
+class Plan {
+ public:
+  /// Binds all registered effects to the world, allocates the union of their fields, declares the
+  /// union of their lists and orders them. Throws std::logic_error that names effect, set and field
+  /// when a derived field has no producer or two in one stage, or when writers and readers form a cycle.
+  Plan(World<Dim>& world, const std::vector<Wish>& wishes);
+
+  /// Runs all effects of the stage, timing each.
+  void run(Stage stage);
+  StepLimits limits() const;
+
+  const std::vector<PlannedEffect<Dim>>& effects() const { return effects_; }
+  const std::vector<UnusedEffect>& unused() const { return unused_; }
+
+ private:
+  void bind(const std::vector<Wish>& wishes);
+  void check_producers(const std::vector<Wish>& wishes) const;
+  void order();
+
+  World<Dim>& world_;
+  std::vector<PlannedEffect<Dim>> effects_;  // by stage, then order of running
+  std::vector<UnusedEffect> unused_;
+};
+
+extern template class Plan<2>;
+extern template class Plan<3>;
+
+}  // namespace sphgeo
