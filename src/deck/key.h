@@ -26,15 +26,20 @@ class Key;
 /// State of one reading of a deck: what was found, what formulas may use, and the rules to run once
 /// the structure is known to be sound.
 struct DeckReading {
+  DeckReading(Diagnostics& findings, Places& where) : found(findings), places(where) {}
+
   Diagnostics& found;
   Places& places;
   Variables variables;
   int dimension = 0;        ///< 0 while unknown: points of two or three numbers are both taken
   double resolution = 0.0;  ///< particle spacing (m), 0 while unknown
-  std::string folder;       ///< of the main deck, for paths given by --set or in a string
+  std::string main_file;    ///< name of the main deck in findings
+  std::string folder;       ///< of the main deck; paths given by --set count from it too
   std::vector<std::function<void()>> rules;
   std::set<std::string> reported_names;  ///< unknown variables already reported
 
+  /// The folder that relative paths in this file (or override) count from.
+  std::string folder_of(const std::string& file) const;
   void error(std::string id, const Place& at, const std::string& path, std::string message,
              std::string help = {}) {
     found.error(std::move(id), at, path, std::move(message), std::move(help));

@@ -45,9 +45,12 @@ inline constexpr Unit inertia{2, 1, 0, false, "kg m2"};
 inline constexpr Unit flow_rate{3, 0, -1, false, "m3/s"};
 }  // namespace unit
 
-/// What a unit text means: the factor to SI and its dimension.
+/// What a unit text means: SI value = number * factor / divisor, and the dimension. Two whole
+/// numbers rather than one fraction: 35 / 1000 is the double nearest to 0.035, 35 * 0.001 may not
+/// be.
 struct UnitText {
   double factor = 1.0;
+  double divisor = 1.0;
   Unit dimension;
 };
 
@@ -82,7 +85,7 @@ QuantityText split_quantity(std::string_view text);
 /// Throws std::invalid_argument with a sentence when it is malformed or of another dimension.
 double parse_quantity(std::string_view text, const Unit& wanted);
 
-/// The unit symbols known to `parse_unit`, for the reference and for suggestions.
+/// The known unit that a misspelt one most likely means, or "".
 std::string nearest_unit(std::string_view text);
 
 }  // namespace sphgeo

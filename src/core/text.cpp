@@ -1,0 +1,105 @@
+#include "core/text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sphgeo {
+
+namespace {
+
+/// Lower case, with `-` and `_` dropped: what people mix up.
+std::string folded(std::string_view text) {
+  std::string out;
+  for (const char c : lower_case(text)) {
+    if (c != '-' && c != '_') out += c;
+  }
+  return out;
+}
+
+}  // namespace
+
+int edit_distance(std::string_view a, std::string_view b) {
+  const std::size_t n = a.size();
+  const std::size_t m = b.size();
+  std::vector<int> before(m + 1), last(m + 1), now(m + 1);
+  for (std::size_t j = 0; j <= m; ++j) last[j] = static_cast<int>(j);
+  for (std::size_t i = 1; i <= n; ++i) {
+    now[0] = static_cast<int>(i);
+    for (std::size_t j = 1; j <= m; ++j) {
+      const int change = a[i - 1] == b[j - 1] ? 0 : 1;
+      now[j] = std::min({last[j] + 1, now[j - 1] + 1, last[j - 1] + change});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+        now[j] = std::min(now[j], before[j - 2] + 1);
+      }
+    }
+    std::swap(before, last);
+    std::swap(last, now);
+  }
+  return last[m];
+}
+
+std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
+  constexpr std::size_t longest = 200;  // nobody misspells longer names, and the table is quadratic
+  if (name.empty() || name.size() > longest) return {};
+  const std::string wanted = folded(name);
+  for (const std::string& c : candidates) {
+    if (!wanted.empty() && folded(c) == wanted) return c;
+  }
+  const int reach = name.size() < 4 ? 1 : 2;
+  int best = reach + 1;
+  std::string found;
+  for (const std::string& c : candidates) {
+    // A name may not be replaced as a whole: "t" is no misspelling of "x".
+    const int d = edit_distance(name, c);
+    if (d < best && d < static_cast<int>(std::max(name.size(), c.size()))) {
+      best = d;
+      found = c;
+    }
+  }
+  if (!found.empty() || name.size() < 3) return found;
+  for (const std::string& c : candidates) {
+    if (c.rfind(name, 0) != 0) continue;
+    if (!found.empty()) return {};
+    found = c;
+  }
+  return found;
+}
+
+std::string suggestion(std::string_view name, const std::vector<std::string>& candidates,
+                       std::string_view what) {
+  if (const std::string near = nearest_name(name, candidates); !near.empty()) {
+    return fmt::format("did you mean '{}'?", near);
+  }
+  constexpr std::size_t few = 16;
+  if (candidates.empty() || candidates.size() > few) return {};
+  return fmt::format("{}: {}", what, in_words(candidates));
+}
+
+std::string in_words(const std::vector<std::string>& names, std::string_view last) {
+  std::string out;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) out += i + 1 == names.size() ? fmt::format(" {} ", last) : std::string(", ");
+    out += names[i];
+  }
+  return out;
+}
+
+std::string exact(double value) { return fmt::format("{}", value); }
+
+std::string lower_case(std::string_view text) {
+  std::string out(text);
+  for (char& c : out) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return out;
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+}  // namespace sphgeo

@@ -1,0 +1,33 @@
+#pragma once
+// Small text helpers: the nearest valid name to a misspelt one, lists in words, exact numbers.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sphgeo {
+
+/// Edits (insert, delete, replace, swap of neighbors) that turn a into b; case counts.
+int edit_distance(std::string_view a, std::string_view b);
+
+/// The candidate a misspelt name most likely means, or "": up to 2 edits away (1 for names shorter
+/// than 4), else equal but for case, `-` and `_`, else the only one that begins with the name.
+/// Among equals the earlier candidate wins.
+std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
+
+/// "did you mean 'porosity'?", or the list of valid names when none is near and they are few.
+std::string suggestion(std::string_view name, const std::vector<std::string>& candidates,
+                       std::string_view what = "valid names");
+
+/// "a, b and c".
+std::string in_words(const std::vector<std::string>& names, std::string_view last = "and");
+
+/// The shortest text that reads back as exactly this number.
+std::string exact(double value);
+
+std::string lower_case(std::string_view text);
+
+/// Without blanks at both ends.
+std::string_view trimmed(std::string_view text);
+
+}  // namespace sphgeo

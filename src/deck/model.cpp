@@ -1,0 +1,178 @@
+#include "deck/model.h"
+
+namespace sphgeo {
+
+Schema<Body> Body::schema() {
+  Schema<Body> s("body", "A region filled with particles of one material at t = 0.");
+  s.required("name", &Body::name, unit::none, "the name of its particles and files");
+  s.required("material", &Body::material, unit::none, "the name of an entry of 'materials'");
+  s.required("shape", &Body::shape, unit::none, "the region it fills");
+  s.optional("filling", &Body::filling, unit::none,
+             "lattice: points of a square lattice; relaxed: moved until they fit the surface")
+      .choices({"lattice", "relaxed"});
+  s.optional("velocity", &Body::velocity, unit::speed, "initial velocity, formulas of x, y, z")
+      .only_of("xyz");
+  s.optional("pressure", &Body::pressure, unit::pressure,
+             "initial pressure: zero, hydrostatic below 'level', or a formula of x, y, z")
+      .choices({"zero", "hydrostatic"})
+      .only_of("xyz");
+  s.optional("level", &Body::level, unit::length,
+             "z of the free surface for hydrostatic pressure; auto: the top of the body");
+  s.check([](Body& b, CheckContext& c) {
+    if (b.level && b.pressure.word != "hydrostatic") {
+      c.error("level", "'level' has no meaning unless pressure is hydrostatic",
+              "set pressure: hydrostatic, or leave 'level' out");
+    }
+  });
+  return s;
+}
+
+Schema<Numerics> Numerics::schema() {
+  Schema<Numerics> s("numerics",
+                     "Choices of the numerical method; the defaults are those of the paper.");
+  s.optional("pair_precision", &Numerics::pair_precision, unit::none,
+             "arithmetic of pair sums: single is faster, the state is double in both")
+      .choices({"single", "double"});
+  s.optional("pair_geometry", &Numerics::pair_geometry, unit::none,
+             "positions used in pair sums: frozen as in Algorithm 2, or current")
+      .choices({"frozen", "current"});
+  s.optional("cfl_acoustic", &Numerics::cfl_acoustic, unit::none,
+             "acoustic step as a fraction of h / (c + |v|)")
+      .above(0)
+      .at_most(1);
+  s.optional("cfl_advection", &Numerics::cfl_advection, unit::none,
+             "advection step as a fraction of h / |v|max")
+      .above(0)
+      .at_most(1);
+  s.optional("advection_ratio_max", &Numerics::advection_ratio_max, unit::none,
+             "largest advection step, in acoustic steps of a fluid at rest")
+      .at_least(1);
+  s.optional("limiter", &Numerics::limiter, unit::none,
+             "factor of the low-dissipation limiter of water's Riemann flux")
+      .at_least(0)
+      .equation("Eq. 63");
+  s.optional("transport_coefficient", &Numerics::transport_coefficient, unit::none,
+             "strength alpha of the transport-velocity correction")
+      .at_least(0)
+      .at_most(1)
+      .equation("Eq. 87");
+  s.optional("density_reinitialization", &Numerics::density_reinitialization, unit::none,
+             "summation: density from the sum over neighbors at each advection step; none: never")
+      .choices({"summation", "none"});
+  s.optional("transport_velocity", &Numerics::transport_velocity, unit::none,
+             "whether inner particles are shifted to an even spacing");
+  s.optional("h_factor_water", &Numerics::h_factor_water, unit::none,
+             "smoothing length of water in spacings; auto: 1.8")
+      .at_least(1)
+      .at_most(3);
+  s.optional("max_lost_fraction", &Numerics::max_lost_fraction, unit::none,
+             "the run stops when more than this fraction of a set has left the domain")
+      .at_least(0)
+      .at_most(1)
+      .changeable_on_resume();
+  s.optional("outside", &Numerics::outside, unit::none,
+             "what happens to particles that leave the domain")
+      .choices({"remove", "stop"});
+  s.optional("domain_min", &Numerics::domain_min, unit::length,
+             "lower corner of the domain; auto: from bodies and boundaries");
+  s.optional("domain_max", &Numerics::domain_max, unit::length,
+             "upper corner of the domain; auto: from bodies and boundaries");
+  s.check([](Numerics& n, CheckContext& c) {
+    if (!n.domain_min || !n.domain_max) return;
+    for (const int axis : {0, 1, 2}) {
+      if (axis == 1 && c.dimension() == 2) continue;
+      if ((*n.domain_min)[axis] < (*n.domain_max)[axis]) continue;
+      c.error("domain_max", "the upper corner of the domain is not above the lower one");
+      return;
+    }
+  });
+  return s;
+}
+
+Schema<Frames> Frames::schema() {
+  Schema<Frames> s("frames", "Particle frames for ParaView.");
+  s.optional("every", &Frames::every, unit::time, "interval between frames; auto: end_time / 20")
+      .above(0);
+  s.optional("fields", &Frames::fields, unit::none,
+             "fields to write; an empty list: the usual ones of each set");
+  s.optional("precision", &Frames::precision, unit::none, "of real numbers in the files")
+      .choices({"float32", "float64"});
+  return s;
+}
+
+Schema<Output> Output::schema() {
+  Schema<Output> s("output", "What a run writes, and how often.");
+  s.optional("frames", &Output::frames, unit::none, "particle frames");
+  s.optional("run_every", &Output::run_every, unit::time,
+             "interval between rows of run.csv; auto: end_time / 200")
+      .above(0);
+  return s;
+}
+
+Schema<Expect> Expect::schema() {
+  Schema<Expect> s("expect",
+                   "A result the deck claims, from a probe, with reference and tolerance.");
+  s.required("name", &Expect::name, unit::none, "the name of the result");
+  s.required("probe", &Expect::probe, unit::none, "a probe, or one of its columns as probe.column");
+  s.optional("reduce", &Expect::reduce, unit::none,
+             "how the column becomes one number; curve: compared with reference_csv as a whole")
+      .choices({"last", "first", "min", "max", "mean", "rms", "range", "time_of_min", "time_of_max",
+                "period", "frequency", "slope", "at", "curve"});
+  s.optional("at", &Expect::at, unit::time, "the time of the value, for reduce: at").at_least(0);
+  s.optional("from", &Expect::from, unit::time, "start of the time window; auto: the first sample");
+  s.optional("to", &Expect::to, unit::time, "end of the time window; auto: the last sample");
+  s.optional("scale", &Expect::scale, unit::none, "the measured numbers are divided by it");
+  s.optional("reference", &Expect::reference, unit::none, "the number that should come out");
+  s.optional("reference_csv", &Expect::reference_csv, unit::none,
+             "table of the reference curve, for reduce: curve");
+  s.optional("x", &Expect::x, unit::none, "abscissa column of the table; auto: the first");
+  s.optional("y", &Expect::y, unit::none, "ordinate column of the table; auto: the second");
+  s.optional("x_scale", &Expect::x_scale, unit::none, "the table's abscissae are multiplied by it");
+  s.optional("y_scale", &Expect::y_scale, unit::none, "the table's ordinates are multiplied by it");
+  s.optional("norm", &Expect::norm, unit::none, "of the difference of two curves")
+      .choices({"l2", "max"});
+  s.required("tolerance", &Expect::tolerance, unit::none,
+             "largest error; for measure below or above: the bound itself");
+  s.optional("tolerance_kind", &Expect::tolerance_kind, unit::none,
+             "relative: a fraction of the reference")
+      .choices({"relative", "absolute"});
+  s.optional("measure", &Expect::measure, unit::none,
+             "within: near the reference; below, above: the value against the tolerance")
+      .choices({"within", "below", "above"});
+  s.optional("source", &Expect::source, unit::none, "where the reference comes from");
+  s.check([](Expect& e, CheckContext& c) {
+    const bool curve = e.reduce == "curve";
+    if (curve != e.reference_csv.has_value()) {
+      c.error(curve ? "reduce" : "reference_csv",
+              curve ? "reduce: curve needs a 'reference_csv'"
+                    : "'reference_csv' is used only with reduce: curve");
+    }
+    if (e.reduce == "at" && !e.at) c.error("reduce", "reduce: at needs the time 'at'");
+    if (e.reduce != "at" && e.at) c.error("at", "'at' has no meaning unless reduce is at");
+    if (!curve && e.measure == "within" && !e.reference) {
+      c.error("", "the result has no reference", "give 'reference', or measure: below or above");
+    }
+    if (e.reference && (curve || e.measure != "within")) {
+      c.error("reference", "'reference' has no meaning here",
+              "it belongs to one number with measure: within");
+    }
+    if (e.scale == 0.0) c.error("scale", "'scale' must not be 0");
+    if (e.measure == "within" && e.tolerance < 0.0)
+      c.error("tolerance", "'tolerance' must not be negative");
+    if (e.measure == "within" && !curve && e.tolerance_kind == "relative" && e.reference == 0.0) {
+      c.error("reference", "a relative tolerance of 0 means nothing",
+              "set tolerance_kind: absolute");
+    }
+    if (e.from && e.to && *e.from >= *e.to) c.error("to", "'to' must be later than 'from'");
+  });
+  return s;
+}
+
+const MaterialSpec* Model::material(const std::string& material_name) const {
+  for (const auto& m : materials) {
+    if (m->name == material_name) return m.get();
+  }
+  return nullptr;
+}
+
+}  // namespace sphgeo

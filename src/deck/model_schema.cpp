@@ -1,0 +1,151 @@
+// The top level of the deck: its sections, and the rules that hold between them.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "core/hash.h"
+#include "core/text.h"
+#include "deck/model.h"
+#include "deck/yaml_writer.h"
+
+namespace sphgeo {
+
+namespace {
+
+/// A key path and the name that stands there.
+using Named = std::pair<std::string, std::string>;
+
+template <class List, class NameOf>
+void collect(std::vector<Named>& out, const char* section, const List& list, NameOf name_of) {
+  for (std::size_t k = 0; k < list.size(); ++k) {
+    out.emplace_back(fmt::format("{}[{}].name", section, k), name_of(list[k]));
+  }
+}
+
+/// Names become parts of file names and key paths, and must tell things apart.
+void check_names(const std::vector<Named>& named, const std::string& what, CheckContext& c) {
+  const auto fits = [](char l) {
+    return (l >= 'a' && l <= 'z') || (l >= 'A' && l <= 'Z') || (l >= '0' && l <= '9') || l == '_' ||
+           l == '-';
+  };
+  for (std::size_t k = 0; k < named.size(); ++k) {
+    const auto& [path, name] = named[k];
+    if (name.empty() || !std::all_of(name.begin(), name.end(), fits)) {
+      c.error(path, fmt::format("'{}' cannot be used as a name", name),
+              "use letters, digits, '_' and '-'", "E024");
+    }
+    for (std::size_t j = 0; j < k; ++j) {
+      if (named[j].second != name) continue;
+      c.error(path, fmt::format("the name '{}' is used twice", name),
+              fmt::format("{} need different names", what), "E022");
+      break;
+    }
+  }
+}
+
+void check_references(const Model& m, CheckContext& c) {
+  std::vector<std::string> materials, probes;
+  for (const auto& material : m.materials) materials.push_back(material->name);
+  for (const auto& probe : m.probes) probes.push_back(probe->name);
+  for (std::size_t k = 0; k < m.bodies.size(); ++k) {
+    if (m.material(m.bodies[k].material) != nullptr) continue;
+    c.error(fmt::format("bodies[{}].material", k),
+            fmt::format("there is no material '{}'", m.bodies[k].material),
+            suggestion(m.bodies[k].material, materials, "materials"), "E021");
+  }
+  for (std::size_t k = 0; k < m.expect.size(); ++k) {
+    const std::string probe = m.expect[k].probe.substr(0, m.expect[k].probe.find('.'));
+    if (std::find(probes.begin(), probes.end(), probe) != probes.end()) continue;
+    c.error(fmt::format("expect[{}].probe", k), fmt::format("there is no probe '{}'", probe),
+            suggestion(probe, probes, "probes"), "E021");
+  }
+}
+
+void check_all(Model& m, CheckContext& c) {
+  std::vector<Named> materials, sets, probes, results;
+  const auto of_pointer = [](const auto& p) { return p->name; };
+  const auto of_value = [](const auto& v) { return v.name; };
+  collect(materials, "materials", m.materials, of_pointer);
+  collect(sets, "bodies", m.bodies, of_value);
+  collect(sets, "boundaries", m.boundaries, of_pointer);
+  collect(probes, "probes", m.probes, of_pointer);
+  collect(results, "expect", m.expect, of_value);
+  check_names(materials, "materials", c);
+  check_names(sets, "bodies and boundaries", c);
+  check_names(probes, "probes", c);
+  check_names(results, "expected results", c);
+  check_references(m, c);
+  if (m.dimension == 2 && m.gravity.y() != 0.0) m.gravity.y() = 0.0;
+}
+
+}  // namespace
+
+Schema<Model> Model::schema() {
+  Schema<Model> s("deck", "A scene, what to measure in it, and what should come out.");
+  s.optional("title", &Model::title, unit::none, "what the deck shows").changeable_on_resume();
+  s.required("dimension", &Model::dimension, unit::none, "2 (the x-z plane) or 3")
+      .at_least(2)
+      .at_most(3);
+  s.required("resolution", &Model::resolution, unit::length, "particle spacing dp").above(0);
+  s.optional("gravity", &Model::gravity, unit::acceleration,
+             "a magnitude, pointing along -z, or a vector [x, y, z]")
+      .downward();
+  s.required("end_time", &Model::end_time, unit::time, "simulated time at which the run ends")
+      .above(0)
+      .changeable_on_resume();
+  s.optional("variables", &Model::variables, unit::none,
+             "numbers that formulas may use; each may use those before it");
+  s.optional("include", &Model::include, unit::none,
+             "deck files whose sections are merged into this one, relative to this file")
+      .changeable_on_resume();
+  s.required("materials", &Model::materials, unit::none, "what bodies are made of").items(1);
+  s.optional("bodies", &Model::bodies, unit::none, "regions filled with particles");
+  s.optional("boundaries", &Model::boundaries, unit::none, "walls and other borders of the scene");
+  s.optional("probes", &Model::probes, unit::none, "what is measured while the scene runs");
+  s.optional("output", &Model::output, unit::none, "frames and tables").changeable_on_resume();
+  s.optional("numerics", &Model::numerics, unit::none, "choices of the numerical method");
+  s.optional("expect", &Model::expect, unit::none, "results the deck claims")
+      .changeable_on_resume();
+  s.check(check_all);
+  return s;
+}
+
+namespace {
+
+Node resolved_tree(const Model& model, const WriteStyle& style) {
+  Node out = Node::map();
+  write_mapping(out, {{&schema_of<Model>(), const_cast<Model*>(&model)}}, style);
+  std::erase_if(out.entries, [](const Entry& e) { return e.key == "include"; });  // merged already
+  return out;
+}
+
+}  // namespace
+
+std::string resolved_yaml(const Model& model) {
+  return "# The deck as it was run: included files merged, overrides applied, all defaults filled "
+         "in.\n" +
+         write_yaml(resolved_tree(model, {}));
+}
+
+std::string deck_hash(const Model& model) {
+  WriteStyle style;
+  style.for_hash = true;
+  return fmt::format("{:016x}", fnv1a(write_yaml(resolved_tree(model, style))));
+}
+
+Json json_schema() {
+  Json out{{"$schema", "http://json-schema.org/draft-07/schema#"},
+           {"title", "sphgeo deck"},
+           {"description", schema_of<Model>().sentence()}};
+  Json definitions = Json::object();
+  Model defaults;
+  json_mapping(out, {{&schema_of<Model>(), &defaults}}, definitions);
+  out["definitions"] = std::move(definitions);
+  return out;
+}
+
+}  // namespace sphgeo

@@ -1,0 +1,29 @@
+#pragma once
+// Strict YAML: what the library lets pass silently is refused here, with its place.
+
+#include <optional>
+#include <string>
+
+#include "core/diagnostic.h"
+#include "deck/node.h"
+
+namespace sphgeo {
+
+/// Bounds against decks that are too large by accident or on purpose (aliases that multiply).
+struct YamlLimits {
+  std::size_t bytes = 10u << 20;
+  int nodes = 200000;
+  int depth = 60;
+};
+
+/// Reads one YAML document. Duplicate keys, merge keys (`<<`), tags, keys that are no text, a
+/// second document and texts beyond the limits are errors. `name` is the file in findings. Empty
+/// when the text cannot be read at all.
+std::optional<Node> read_yaml(const std::string& text, const std::string& name, Diagnostics& found,
+                              const YamlLimits& limits = {});
+
+/// The whole file, or standard input for "-". Reports E001 and returns empty on failure.
+std::optional<std::string> read_text_file(const std::string& path, const Place& named_at,
+                                          Diagnostics& found);
+
+}  // namespace sphgeo
