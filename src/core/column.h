@@ -1,0 +1,20 @@
+#pragma once
+// What a column of numbers means: used by probes, by run.csv and by every CSV file that is written.
+
+#include <string>
+
+namespace sphgeo {
+
+/// One column: its name, its SI unit ("" or "1" when there is none) and a sentence for the legend.
+struct Column {
+  std::string name;
+  std::string unit;
+  std::string sentence;
+
+  /// "pressure [Pa]", or the bare name when there is no unit.
+  std::string heading() const {
+    return unit.empty() || unit == "1" ? name : name + " [" + unit + "]";
+  }
+};
+
+}  // namespace sphgeo

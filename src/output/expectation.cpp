@@ -1,0 +1,140 @@
+#include "output/expectation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/csv_table.h"
+#include "deck/model.h"
+#include "output/reduction.h"
+#include "output/series.h"
+
+namespace sphgeo {
+
+namespace {
+
+/// A curve that covers less than this share of its reference is not taken for a comparison.
+constexpr double least_coverage = 0.5;
+
+/// "front" or "front.x": the probe and its column; a probe's own name may hold dots.
+struct Source {
+  const Series* series = nullptr;
+  std::string column;  ///< empty: the first
+};
+
+Source find_source(const std::string& probe, const SeriesLookup& series) {
+  if (const Series* whole = series(probe)) return {whole, {}};
+  const auto dot = probe.rfind('.');
+  if (dot == std::string::npos) return {};
+  return {series(probe.substr(0, dot)), probe.substr(dot + 1)};
+}
+
+void measure_number(const Expect& e, const Samples& samples, ExpectResult& result) {
+  if (const std::optional<double> reduced = reduce(samples, e.reduce, e.at))
+    result.value = *reduced / e.scale;
+  else
+    result.note = fmt::format("the {} samples hold no '{}'", samples.t.size(), e.reduce);
+}
+
+void measure_curve(const Expect& e, Samples samples, ExpectResult& result) {
+  if (!e.reference_csv) {
+    result.note = "a curve needs a reference_csv";
+    return;
+  }
+  const CsvTable table = read_csv_table(e.reference_csv->path);
+  if (table.names().size() < 2 && !(e.x && e.y))
+    throw TableError(table.path() + ": a curve needs two columns");
+  std::vector<double> x = table.numbers(e.x.value_or(table.names().front()));
+  std::vector<double> y = table.numbers(e.y ? *e.y : table.names()[1]);
+  for (double& v : samples.y) v /= e.scale;
+  for (double& v : x) v *= e.x_scale;
+  for (double& v : y) v *= e.y_scale;
+  for (double& v : x)  // a point outside of the window takes no part, not even in the range
+    if ((e.from && v < *e.from) || (e.to && v > *e.to)) v = std::nan("");
+  const std::optional<CurveDifference> d = compare_curve(samples, x, y);
+  if (!d) {
+    result.note = "no point of the reference can be compared";
+    return;
+  }
+  if (d->skipped > 0)
+    result.note = fmt::format("{} of {} points of the reference lie outside of the samples",
+                              d->skipped, d->used + d->skipped);
+  if (d->used >= least_coverage * (d->used + d->skipped))
+    result.value = e.norm == "max" ? d->max : d->l2;
+}
+
+void judge(const Expect& e, ExpectResult& result) {
+  if (!result.value || !std::isfinite(*result.value)) return;
+  const double value = *result.value;
+  if (e.measure == "above") {
+    result.pass = value >= e.tolerance;
+  } else if (e.measure == "below" || e.reduce == "curve") {
+    result.error = value;
+    result.pass = value <= e.tolerance;
+  } else if (!e.reference) {
+    result.note = "there is no reference to compare with";
+  } else {
+    const bool relative = e.tolerance_kind == "relative";
+    if (relative && *e.reference == 0) {
+      result.note = "a relative tolerance of a reference of zero: set tolerance_kind: absolute";
+      return;
+    }
+    result.error = std::abs(value - *e.reference) / (relative ? std::abs(*e.reference) : 1.0);
+    result.pass = *result.error <= e.tolerance;
+  }
+}
+
+std::string cell(const std::optional<double>& value) {
+  return value ? fmt::format("{:.6g}", *value) : std::string("-");
+}
+
+}  // namespace
+
+ExpectResult evaluate(const Expect& e, const SeriesLookup& series) {
+  ExpectResult result;
+  result.name = e.name;
+  result.reference = e.reference;
+  result.tolerance = e.tolerance;
+  const Source source = find_source(e.probe, series);
+  if (!source.series) {
+    result.note = fmt::format("no probe '{}'", e.probe);
+    return result;
+  }
+  if (!source.column.empty() && !source.series->has(source.column)) {
+    result.note =
+        fmt::format("probe '{}' has no column '{}'", source.series->name(), source.column);
+    return result;
+  }
+  const auto values =
+      source.column.empty() ? source.series->column(0) : source.series->column(source.column);
+  const Samples samples = cut(source.series->times(), values, e.from, e.to);
+  if (e.reduce == "curve")
+    measure_curve(e, samples, result);
+  else
+    measure_number(e, samples, result);
+  judge(e, result);
+  return result;
+}
+
+std::vector<ExpectResult> evaluate(std::span<const Expect> expects, const SeriesLookup& series) {
+  std::vector<ExpectResult> results;
+  for (const Expect& e : expects) results.push_back(evaluate(e, series));
+  return results;
+}
+
+std::string render_expectations(std::span<const ExpectResult> results) {
+  std::size_t width = 6;
+  for (const ExpectResult& r : results) width = std::max(width, r.name.size());
+  std::string out = fmt::format("  {:<{}}  {:>12}  {:>12}  {:>12}  {:>12}\n", "expect", width,
+                                "value", "reference", "error", "tolerance");
+  for (const ExpectResult& r : results) {
+    out +=
+        fmt::format("  {:<{}}  {:>12}  {:>12}  {:>12}  {:>12}  {}\n", r.name, width, cell(r.value),
+                    cell(r.reference), cell(r.error), cell(r.tolerance), r.pass ? "pass" : "FAIL");
+    if (!r.note.empty()) out += fmt::format("  {:<{}}  ({})\n", "", width, r.note);
+  }
+  return out;
+}
+
+}  // namespace sphgeo

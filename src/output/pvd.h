@@ -1,0 +1,39 @@
+#pragma once
+// The .pvd file that lists the frames of one set with their times.
+
+#include <string>
+#include <vector>
+
+namespace sphgeo {
+
+/// Keeps a ParaView collection valid after every frame: it is replaced as a whole each time, so a
+/// killed run can be opened up to its last frame.
+class PvdFile {
+ public:
+  /// A new, empty collection; the file appears with the first frame.
+  explicit PvdFile(std::string path) : path_(std::move(path)) {}
+
+  /// Continues the collection that sphgeo wrote earlier, without its frames later than `last_time`
+  /// (s). Throws IoError when the file cannot be read or is none of ours.
+  static PvdFile resume(const std::string& path, double last_time);
+
+  /// Adds a frame (its path relative to the .pvd file) and replaces the file. Throws IoError.
+  /// A frame of the same file name is replaced.
+  void add(double time, const std::string& frame);
+  /// Drops the frames later than `last_time` (s) and replaces the file.
+  void truncate_after(double last_time);
+
+  struct Frame {
+    double time;  ///< s
+    std::string file;
+  };
+  const std::vector<Frame>& frames() const { return frames_; }
+
+ private:
+  void write() const;
+
+  std::string path_;
+  std::vector<Frame> frames_;
+};
+
+}  // namespace sphgeo

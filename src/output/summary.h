@@ -1,0 +1,67 @@
+#pragma once
+// summary.json: what a run did, for scripts.
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/types.h"
+#include "output/expectation.h"
+#include "output/time_table.h"
+
+namespace sphgeo {
+
+/// One conserved quantity: kg, kg m/s or J (per metre of depth in 2D); vectors have several
+/// components.
+struct LedgerRow {
+  std::string name;  ///< mass, momentum, energy ...
+  std::string unit;
+  std::vector<double> initial, final;
+  std::vector<double> exchanged;  ///< what boundaries and gravity brought in; empty = nothing
+  double relative_error = 0;      ///< what is unexplained, by a scale of the run
+};
+
+/// What the guard watched, and what stopped the run.
+struct GuardReport {
+  bool tripped = false;
+  std::string reason, effect, set;  ///< empty unless tripped
+  std::optional<Id> particle;
+  std::optional<Vec3> place;                             ///< m
+  std::optional<double> time;                            ///< s
+  std::vector<std::pair<std::string, double>> extremes;  ///< max_speed, min_density, lost ...
+};
+
+/// All that summary.json holds.
+struct Summary {
+  std::string status;  ///< done, unstable, stopped, failed
+  int exit_code = 0;
+  std::string message;  ///< one sentence when the run did not end as planned
+  std::string version;
+  std::string title, deck, deck_hash;
+  int dimension = 0;
+  int threads = 1;
+  std::vector<std::pair<std::string, Index>> particles;
+  Index advection_steps = 0, acoustic_steps = 0, solid_steps = 0;
+  double time_s = 0;  ///< simulated
+  double wall_s = 0;
+  double particle_updates_per_s_per_core = 0;  ///< one update = one acoustic step of one particle
+  std::uint64_t memory_peak_bytes = 0;
+  std::vector<TimeRow> effects;  ///< from with_rest()
+  std::vector<ExpectResult> expect;
+  std::vector<LedgerRow> ledger;
+  GuardReport guard;
+};
+
+/// The summary as JSON, keys in a fixed order; numbers that are not finite become null.
+nlohmann::ordered_json to_json(const Summary& summary);
+
+/// Writes summary.json, whole or not at all. Throws IoError.
+void write_summary(const std::string& path, const Summary& summary);
+
+/// The largest memory this process has held so far, bytes; 0 when the system does not tell.
+std::uint64_t peak_memory_bytes();
+
+}  // namespace sphgeo

@@ -1,0 +1,40 @@
+#include "output/time_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace sphgeo {
+
+std::vector<TimeRow> with_rest(std::vector<TimeRow> rows, double wall_s) {
+  std::erase_if(rows, [](const TimeRow& r) { return r.calls == 0 && r.seconds == 0; });
+  std::sort(rows.begin(), rows.end(), [](const TimeRow& a, const TimeRow& b) {
+    return a.seconds != b.seconds ? a.seconds > b.seconds : a.name < b.name;
+  });
+  double sum = 0;
+  for (const TimeRow& r : rows) sum += r.seconds;
+  // The rest may come out below zero when rows were measured twice: it is shown, not hidden.
+  rows.push_back({"rest", 1, wall_s - sum, 0});
+  for (TimeRow& r : rows) r.share = wall_s > 0 ? r.seconds / wall_s : 0;
+  return rows;
+}
+
+std::string render_time_table(const std::vector<TimeRow>& rows) {
+  std::size_t width = 6;
+  for (const TimeRow& r : rows) width = std::max(width, r.name.size());
+  std::string out = fmt::format("  {:<{}}  {:>10}  {:>10}  {:>7}\n", "effect", width, "calls",
+                                "seconds", "share");
+  TimeRow total{"total", 0, 0, 0};
+  for (const TimeRow& r : rows) {
+    const std::string calls = r.name == "rest" ? "" : std::to_string(r.calls);
+    out += fmt::format("  {:<{}}  {:>10}  {:>10.3f}  {:>5.1f} %\n", r.name, width, calls, r.seconds,
+                       100 * r.share);
+    total.seconds += r.seconds;
+    total.share += r.share;
+  }
+  out += fmt::format("  {:<{}}  {:>10}  {:>10.3f}  {:>5.1f} %\n", total.name, width, "",
+                     total.seconds, 100 * total.share);
+  return out;
+}
+
+}  // namespace sphgeo

@@ -1,0 +1,76 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "core/atomic_file.h"
+#include "core/csv_table.h"
+
+using namespace sphgeo;
+
+namespace {
+
+/// The message of the TableError that parsing (and asking for column `p`) throws; "" when none.
+std::string failure(const std::string& text, const std::string& column = {}) {
+  try {
+    const CsvTable table = parse_csv_table(text, "t.csv");
+    if (!column.empty()) table.numbers(column);
+  } catch (const TableError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+}  // namespace
+
+TEST_SUITE("core") {
+  TEST_CASE("a table with comments, units, quotes, empty cells and a foreign line end") {
+    const CsvTable t = parse_csv_table(
+        "\xEF\xBB\xBF# source: here\r\ntime [s],p [Pa], case \r\n0,1.5e3,\"a, "
+        "\"\"b\"\"\"\r\n\r\n0.5,,c\r\n",
+        "t.csv");
+    CHECK(t.comments() == std::vector<std::string>{"source: here"});
+    CHECK(t.names() == std::vector<std::string>{"time [s]", "p [Pa]", "case"});
+    CHECK(t.rows() == 2);
+    CHECK(t.numbers("time") == std::vector<double>{0, 0.5});
+    CHECK(t.numbers("p [Pa]")[0] == 1500);
+    CHECK(std::isnan(t.numbers("p")[1]));
+    CHECK(t.text("case") == std::vector<std::string>{"a, \"b\"", "c"});
+    CHECK(t.has("p"));
+    CHECK_FALSE(t.has("q"));
+  }
+
+  TEST_CASE("a grid of numbers without names") {
+    const CsvTable t = parse_csv_table("# grid\n1,2\n3,4\n", "t.csv");
+    CHECK(t.rows() == 2);
+    CHECK(t.numbers("2") == std::vector<double>{2, 4});
+  }
+
+  TEST_CASE("rows are picked by text or by number") {
+    const CsvTable t = parse_csv_table("who,Tv,p\na,0.10,1\nb,0.2,2\na,0.1,3\n", "t.csv");
+    CHECK(t.where("who", "a").numbers("p") == std::vector<double>{1, 3});
+    CHECK(t.where("Tv", "0.1").numbers("p") == std::vector<double>{1, 3});
+    CHECK(t.where("Tv", "9").rows() == 0);
+    CHECK_THROWS_AS(t.where("x", "1"), TableError);
+  }
+
+  TEST_CASE("every message names file and line") {
+    CHECK(failure("a,b\n1,2\n3\n") == "t.csv:3: 1 cells, but there are 2 columns");
+    CHECK(failure("a,p\n1,2\n3,4 m\n", "p") == "t.csv:3: column 'p': '4 m' is not a finite number");
+    CHECK(failure("a,p\n1,inf\n", "p") == "t.csv:2: column 'p': 'inf' is not a finite number");
+    CHECK(failure("a,p\n1,1e999\n", "p") == "t.csv:2: column 'p': '1e999' is not a finite number");
+    CHECK(failure("a,p\n1,2\n", "q") == "t.csv: no column 'q' (columns: a, p)");
+    CHECK(failure("a,a\n1,2\n") == "t.csv:1: two columns are called 'a'");
+    CHECK(failure("a,\n1,2\n") == "t.csv:1: a column has no name");
+    CHECK(failure("a,b\n\"1,2\n") == "t.csv:2: the quote is not closed");
+    CHECK(failure("a,b\n\"1\"2,3\n") == "t.csv:2: text after a closing quote");
+    CHECK(failure("# only words\n") == "t.csv: the table has no row of column names");
+    CHECK(failure("a,b\n1,2\n", "b").empty());
+  }
+
+  TEST_CASE("a missing table is an input-output failure") {
+    CHECK_THROWS_WITH_AS(read_csv_table("/nowhere/t.csv"),
+                         "/nowhere/t.csv: cannot open the file: No such file or directory",
+                         IoError);
+    CHECK_THROWS_AS(read_csv_table("/"), IoError);
+  }
+}

@@ -1,0 +1,206 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/atomic_file.h"
+#include "core/csv_table.h"
+#include "deck/model.h"
+#include "output/expectation.h"
+#include "output/reduction.h"
+#include "output/series.h"
+#include "temporary_folder.h"
+
+using namespace sphgeo;
+using std::numbers::pi;
+
+namespace {
+
+const double none = std::nan("");
+
+/// n + 1 samples of a function at slightly irregular times from 0 to end.
+template <class F>
+Samples sampled(int n, double end, F f) {
+  Samples s;
+  for (int i = 0; i <= n; ++i) {
+    const double shift = i == 0 || i == n ? 0 : 0.3 * std::sin(12.9898 * i);
+    s.t.push_back(end * (i + shift) / n);
+    s.y.push_back(f(s.t.back()));
+  }
+  return s;
+}
+
+double value_of(const Samples& s, const char* name, std::optional<double> at = {}) {
+  return reduce(s, name, at).value_or(-999);
+}
+
+}  // namespace
+
+TEST_SUITE("output") {
+  TEST_CASE("reductions of a line against closed forms") {
+    const Samples s = sampled(50, 4, [](double t) { return 3 * t - 2; });
+    CHECK(value_of(s, "last") == doctest::Approx(10));
+    CHECK(value_of(s, "first") == doctest::Approx(-2));
+    CHECK(value_of(s, "min") == doctest::Approx(-2));
+    CHECK(value_of(s, "max") == doctest::Approx(10));
+    CHECK(value_of(s, "max_abs") == doctest::Approx(10));
+    CHECK(value_of(s, "range") == doctest::Approx(12));
+    CHECK(value_of(s, "mean") == doctest::Approx(4));
+    CHECK(value_of(s, "rms") == doctest::Approx(std::sqrt(28.0)));  // integral of (3t-2)^2 over 4
+    CHECK(value_of(s, "slope") == doctest::Approx(3));
+    CHECK(value_of(s, "time_of_max") == doctest::Approx(4));
+    CHECK(value_of(s, "time_of_min") == doctest::Approx(0));
+    CHECK(value_of(s, "at", 1.2345) == doctest::Approx(3 * 1.2345 - 2));
+    CHECK_FALSE(reduce(s, "at", 4.1));
+    CHECK_FALSE(reduce(s, "at"));
+    CHECK_FALSE(reduce(s, "period"));
+    CHECK_THROWS_AS(reduce(s, "median"), std::invalid_argument);
+    CHECK_THROWS_AS(reduce({}, "median"), std::invalid_argument);
+    for (const std::string_view name : reduction_names()) CHECK_FALSE(reduce({}, name, 0));
+    CHECK(value_of({{1}, {5}}, "mean") == 5);
+    CHECK_FALSE(reduce({{1}, {5}}, "slope"));
+  }
+
+  TEST_CASE("a window cuts between samples, and samples without support are left out") {
+    const std::vector<double> t = {0, 1, 2, 3}, y = {0, none, 4, 9};
+    CHECK(cut(t, y, {}, {}).t == std::vector<double>{0, 2, 3});
+    const Samples s = cut(t, y, 1, 2.5);
+    CHECK(s.t == std::vector<double>{1, 2, 2.5});
+    CHECK(s.y == std::vector<double>{2, 4, 6.5});
+    CHECK(cut(t, y, 2, 2).t == std::vector<double>{2});
+    CHECK(cut(t, y, -5, 99).t.size() == 3);
+    CHECK(cut(t, y, 4, 5).t.empty());
+    CHECK(cut(t, y, 3, 1).t.empty());
+  }
+
+  TEST_CASE("the period of pure, offset, drifting, damped and noisy oscillations") {
+    for (const double phase : {0.0, 0.7, pi / 2, 2.5})
+      for (const double periods : {2.2, 3.6, 5.0, 9.5}) {
+        CAPTURE(phase);
+        CAPTURE(periods);
+        const double period = 1.13392;
+        const double w = 2 * pi / period;
+        const double end = periods * period;
+        const auto wave = [&](double t) { return std::cos(w * t + phase); };
+        const int n = 40 * static_cast<int>(periods + 1);
+        CHECK(value_of(sampled(n, end, wave), "period") == doctest::Approx(period).epsilon(2e-3));
+        CHECK(value_of(sampled(n, end, [&](double t) { return 40 + 0.01 * wave(t); }), "period") ==
+              doctest::Approx(period).epsilon(2e-3));
+        if (periods < 3) continue;  // fewer do not tell a trend or a decay from the wave
+        CHECK(value_of(sampled(n, end, [&](double t) { return wave(t) + 0.5 * t; }), "period") ==
+              doctest::Approx(period).epsilon(5e-3));
+        CHECK(value_of(sampled(n, end, [&](double t) { return std::exp(-0.15 * t) * wave(t); }),
+                       "period") == doctest::Approx(period).epsilon(5e-3));
+        const Samples noisy = sampled(n, end, [&](double t) {
+          return wave(t) + 0.08 * std::sin(977 * t) + 0.05 * std::cos(2311 * t * t);
+        });
+        CHECK(value_of(noisy, "period") == doctest::Approx(period).epsilon(2e-2));
+        CHECK(value_of(noisy, "frequency") == doctest::Approx(1 / value_of(noisy, "period")));
+      }
+    CHECK_FALSE(reduce(sampled(40, 0.7, [](double t) { return std::sin(2 * pi * t); }), "period"));
+    CHECK_FALSE(reduce(sampled(40, 1, [](double) { return 1; }), "period"));
+  }
+
+  TEST_CASE("the difference of curves") {
+    const Samples s = sampled(10, 2, [](double t) { return t; });
+    const std::vector<double> x = {0, 0.5, 1, 1.5, none, 3}, y = {0, 0.6, 0.9, 1.5, 7, 2};
+    const CurveDifference d = compare_curve(s, x, y).value();
+    CHECK(d.used == 4);
+    CHECK(d.skipped == 1);
+    CHECK(d.max == doctest::Approx(0.1 / 2));
+    CHECK(d.l2 == doctest::Approx(std::sqrt(0.02 / 4) / 2));
+    CHECK_FALSE(compare_curve({}, x, y));
+    CHECK_FALSE(compare_curve(s, std::vector<double>{0, 1}, std::vector<double>{1, 1}));
+  }
+
+  TEST_CASE("claims of a deck are measured and judged") {
+    Series gauge("gauge.left", {{"level", "m", ""}, {"p", "Pa", ""}});
+    for (int i = 0; i <= 20; ++i)
+      gauge.add(0.1 * i, std::vector<double>{0.05 * i, i < 10 ? none : 1000 + i});
+    const SeriesLookup lookup = [&](const std::string& name) {
+      return name == "gauge.left" ? &gauge : nullptr;
+    };
+    Expect e;
+    e.name = "level";
+    e.probe = "gauge.left";
+    e.reference = 0.98;
+    e.tolerance = 0.03;
+    ExpectResult r = evaluate(e, lookup);
+    CHECK(r.value.value() == doctest::Approx(1));
+    CHECK(r.error.value() == doctest::Approx(0.02 / 0.98));
+    CHECK(r.pass);
+    e.tolerance_kind = "absolute";
+    e.tolerance = 0.019;
+    r = evaluate(e, lookup);
+    CHECK(r.error.value() == doctest::Approx(0.02));
+    CHECK_FALSE(r.pass);
+    e.scale = 1 / 0.98;
+    CHECK(evaluate(e, lookup).pass);
+
+    SUBCASE("bounds, columns and windows") {
+      Expect b;
+      b.name = "pressure";
+      b.probe = "gauge.left.p";
+      b.reduce = "max";
+      b.to = 1.5;
+      b.measure = "below";
+      b.tolerance = 1015;
+      CHECK(evaluate(b, lookup).pass);
+      b.tolerance = 1014;
+      CHECK_FALSE(evaluate(b, lookup).pass);
+      b.measure = "above";
+      CHECK(evaluate(b, lookup).pass);
+      b.to = 0.5;  // no support there
+      r = evaluate(b, lookup);
+      CHECK_FALSE(r.pass);
+      CHECK_FALSE(r.value);
+      CHECK(r.note == "the 0 samples hold no 'max'");
+    }
+    SUBCASE("curves") {
+      const test::TemporaryFolder folder;
+      write_file_atomically(folder / "ref.csv", "T,Z\n0,0\n1,10\n2,22\n9,90\n");
+      Expect c;
+      c.name = "curve";
+      c.probe = "gauge.left.level";
+      c.reduce = "curve";
+      c.reference_csv = FilePath{folder / "ref.csv"};
+      c.y_scale = 0.05;  // Z = 10 t
+      c.x_scale = 1;
+      c.to = 2;  // the far point is left out, of the range too
+      c.tolerance = 0.06;
+      r = evaluate(c, lookup);
+      CHECK(r.value.value() == doctest::Approx(std::sqrt(0.01 / 3) / 1.1));
+      CHECK(r.error == r.value);
+      CHECK(r.pass);
+      c.norm = "max";
+      CHECK(evaluate(c, lookup).value.value() == doctest::Approx(0.1 / 1.1));
+      c.to.reset();
+      CHECK(evaluate(c, lookup).note ==
+            "1 of 4 points of the reference lie outside of the samples");
+      c.x_scale = 5;  // most of the reference is never reached: no comparison
+      r = evaluate(c, lookup);
+      CHECK_FALSE(r.pass);
+      CHECK_FALSE(r.value);
+      c.y = "nothing";
+      CHECK_THROWS_AS(evaluate(c, lookup), TableError);
+    }
+    SUBCASE("what cannot be measured fails and says why") {
+      Expect b = e;
+      b.probe = "other";
+      CHECK(evaluate(b, lookup).note == "no probe 'other'");
+      b.probe = "gauge.left.q";
+      CHECK(evaluate(b, lookup).note == "probe 'gauge.left' has no column 'q'");
+      b = e;
+      b.reference = 0;
+      b.tolerance_kind = "relative";
+      CHECK_FALSE(evaluate(b, lookup).pass);
+      b.reference.reset();
+      CHECK(evaluate(b, lookup).note == "there is no reference to compare with");
+      const std::vector<ExpectResult> all = evaluate(std::vector<Expect>{e, b}, lookup);
+      const std::string table = render_expectations(all);
+      CHECK(table.find("pass") != std::string::npos);
+      CHECK(table.find("FAIL") != std::string::npos);
+      CHECK(table.find("(there is no reference to compare with)") != std::string::npos);
+    }
+  }
+}
