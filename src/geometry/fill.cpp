@@ -1,0 +1,177 @@
+#include "geometry/fill.h"
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "geometry/shapes.h"
+
+namespace sphgeo {
+
+namespace {
+
+/// The part of `box` within `clip`; an empty clip means no clip.
+Aabb clipped(Aabb box, const Aabb& clip) {
+  if (clip.empty()) return box;
+  box.lo = box.lo.cwiseMax(clip.lo);
+  box.hi = box.hi.cwiseMin(clip.hi);
+  return box;
+}
+
+/// y is left out in 2D.
+Aabb in_scene(Aabb box, int dim) {
+  if (dim == 2) box.lo.y() = box.hi.y() = 0.0;
+  return box;
+}
+
+void refuse_unbounded(const Aabb& box) {
+  if (!box.lo.allFinite() || !box.hi.allFinite())
+    throw Error(ExitCode::usage,
+                "the shape is unbounded and cannot be filled: intersect it with a box");
+}
+
+/// Answers for a lattice point: accept it or not, and how far (m) the answer surely holds around it.
+struct Verdict {
+  bool accept;
+  double holds;
+};
+
+/// Range of cells k whose centres origin + (k + 1/2) dp lie in [lo, hi]; round-off of a millionth of
+/// a cell neither gains nor loses one.
+struct Range {
+  Index first = 0, last = -1;
+  Index size() const { return std::max<Index>(last - first + 1, 0); }
+};
+Range cells(double lo, double hi, double origin, double dp) {
+  return {static_cast<Index>(std::ceil((lo - origin) / dp - 0.5 - 1e-6)),
+          static_cast<Index>(std::floor((hi - origin) / dp - 0.5 + 1e-6))};
+}
+
+std::vector<Vec3> collect(const Aabb& box, const Vec3& origin, double dp, int dim,
+                          const std::function<Verdict(const Vec3&)>& judge) {
+  const Range x = cells(box.lo.x(), box.hi.x(), origin.x(), dp);
+  const Range y = dim == 3 ? cells(box.lo.y(), box.hi.y(), origin.y(), dp) : Range{0, 0};
+  const Range z = cells(box.lo.z(), box.hi.z(), origin.z(), dp);
+  const Index rows = y.size() * z.size();
+  if (x.size() == 0 || rows == 0) return {};
+  // One list per block of rows, joined in order: the same points for any number of threads.
+  const int rows_per_block = static_cast<int>(std::clamp<Index>(4096 / x.size(), 1, 256));
+  std::vector<std::vector<Vec3>> parts(
+      static_cast<std::size_t>((rows + rows_per_block - 1) / rows_per_block));
+  parallel_blocks(rows, rows_per_block, [&](Index begin, Index end, Index block) {
+    std::vector<Vec3>& out = parts[static_cast<std::size_t>(block)];
+    for (Index row = begin; row < end; ++row) {
+      const auto centre = [&](Index k) {
+        return Vec3(origin.x() + (static_cast<double>(k) + 0.5) * dp,
+                    dim == 3 ? origin.y() + (static_cast<double>(y.first + row % y.size()) + 0.5) * dp : 0.0,
+                    origin.z() + (static_cast<double>(z.first + row / y.size()) + 0.5) * dp);
+      };
+      for (Index k = x.first; k <= x.last;) {
+        const Verdict v = judge(centre(k));
+        // The distance also answers for the next few points of the row.
+        const auto more = static_cast<Index>(std::min(0.999 * v.holds / dp, 1e9));
+        const Index stop = std::min(k + more, x.last);
+        if (v.accept)
+          for (Index i = k; i <= stop; ++i) out.push_back(centre(i));
+        k = stop + 1;
+      }
+    }
+  });
+  std::size_t total = 0;
+  for (const auto& part : parts) total += part.size();
+  std::vector<Vec3> points;
+  points.reserve(total);
+  for (auto& part : parts) {
+    points.insert(points.end(), part.begin(), part.end());
+    part = {};
+  }
+  return points;
+}
+
+void refuse_absurd(double expected) {
+  if (expected > largest_fill)
+    throw Error(ExitCode::usage, "the shape would take about " + std::to_string(expected) +
+                                     " particles: is the resolution or a length in the wrong unit?");
+}
+
+double volume(const Aabb& box, int dim) {
+  const Vec3 size = (box.hi - box.lo).cwiseMax(0.0);
+  return dim == 3 ? size.prod() : size.x() * size.z();
+}
+
+Vec3 default_origin(const Shape& shape, const Aabb& clip) {
+  Vec3 origin = shape.box().lo;
+  for (int k = 0; k < 3; ++k)
+    if (!std::isfinite(origin[k])) origin[k] = clip.empty() ? 0.0 : clip.lo[k];
+  return origin;
+}
+
+}  // namespace
+
+double estimate_fill(const Shape& shape, double dp, int dim, const Aabb& clip) {
+  const Aabb box = in_scene(clipped(shape.box(), clip), dim);
+  if (box.empty()) return 0.0;
+  if (!box.lo.allFinite() || !box.hi.allFinite()) return std::numeric_limits<double>::infinity();
+  const int n = dim == 3 ? 16 : 64;
+  const Vec3 cell = (box.hi - box.lo) / n;
+  // A cell counts by how deep its centre lies, so that thin bodies between the centres are seen too.
+  const double reach = 0.5 * (dim == 3 ? std::cbrt(cell.prod()) : std::sqrt(cell.x() * cell.z()));
+  const Index rows = dim == 3 ? n * n : n;
+  const double filled = ordered_sum(rows, [&](Index row) {
+    double sum = 0.0;
+    for (int i = 0; i < n; ++i) {
+      const Vec3 p = box.lo + cell.cwiseProduct(Vec3(i + 0.5, dim == 3 ? static_cast<double>(row % n) + 0.5 : 0.0,
+                                                     static_cast<double>(dim == 3 ? row / n : row) + 0.5));
+      const double d = distance_bound(shape, p);
+      sum += reach > 0.0 ? std::clamp(0.5 - 0.5 * d / reach, 0.0, 1.0) : (d < 0.0 ? 1.0 : 0.0);
+    }
+    return sum;
+  });
+  return filled / static_cast<double>(rows * n) * volume(box, dim) / std::pow(dp, dim);
+}
+
+std::vector<Vec3> fill_lattice(const Shape& shape, double dp, int dim, const Aabb& clip,
+                               std::optional<Vec3> origin) {
+  const Aabb box = in_scene(clipped(shape.box(), clip), dim);
+  if (box.empty()) return {};
+  refuse_unbounded(box);
+  if (volume(box, dim) / std::pow(dp, dim) > largest_fill)
+    refuse_absurd(estimate_fill(shape, dp, dim, clip));
+  return collect(box, origin.value_or(default_origin(shape, clip)), dp, dim, [&](const Vec3& p) {
+    const double d = distance_bound(shape, p);
+    return Verdict{d < -1e-9 * dp, std::abs(d)};
+  });
+}
+
+std::vector<Vec3> fill_layers(const Shape& shape, double dp, int dim, double thickness,
+                              LayerSide side, const Aabb& clip) {
+  const bool outside = side == LayerSide::outside;
+  const Aabb around = outside ? shape.box().grown(thickness) : shape.box();
+  const Aabb box = in_scene(clipped(around, clip), dim);
+  if (box.empty()) return {};
+  refuse_unbounded(box);
+  if (volume(box, dim) / std::pow(dp, dim) > 64.0 * largest_fill)
+    refuse_absurd(volume(box, dim) / std::pow(dp, dim));
+  const double slack = 1e-9 * dp;
+  const auto* plain_box = dynamic_cast<const Box*>(&shape);
+  return collect(box, default_origin(shape, clip), dp, dim, [&](const Vec3& p) {
+    double d = outside ? -distance_bound(shape, p) : distance_bound(shape, p);
+    if (d >= -slack) return Verdict{false, std::max(d - slack, 0.0)};
+    if (plain_box && outside) {
+      // Measured across each face separately, so that the corners of a tank are closed.
+      Vec3 out = (plain_box->min - p).cwiseMax(p - plain_box->max);
+      if (dim == 2) out.y() = 0.0;
+      d = -out.maxCoeff();
+    } else if (dynamic_cast<const BoundedShape*>(&shape)) {
+      // The bound settles the far points cheaply; near the layer the true distance is worth its price.
+      if (-d >= thickness - slack) return Verdict{false, -d - thickness};
+      d = outside ? -shape.signed_distance(p) : shape.signed_distance(p);
+    }
+    if (-d >= thickness - slack) return Verdict{false, std::max(-d - thickness, 0.0)};
+    return Verdict{true, std::max(std::min(-d, thickness + d) - slack, 0.0)};
+  });
+}
+
+}  // namespace sphgeo

@@ -1,0 +1,234 @@
+#include "geometry/mesh.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <unordered_map>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "geometry/shapes.h"
+
+namespace sphgeo {
+
+namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+SurfaceMesh closed_outline(const std::vector<Vec2>& corners) {
+  SurfaceMesh mesh;
+  const auto n = static_cast<std::int32_t>(corners.size());
+  const bool left = polygon_area(corners) > 0.0;
+  for (std::int32_t k = 0; k < n; ++k) {
+    mesh.points.emplace_back(corners[at(k)].x(), 0.0, corners[at(k)].y());
+    const std::int32_t next = (k + 1) % n;
+    mesh.segments.push_back(left ? std::array{k, next} : std::array{next, k});
+  }
+  return mesh;
+}
+
+SurfaceMesh box_surface(const Box& box) {
+  SurfaceMesh mesh;
+  for (int k = 0; k < 8; ++k)
+    mesh.points.emplace_back((k & 1 ? box.max : box.min).x(), (k & 2 ? box.max : box.min).y(),
+                             (k & 4 ? box.max : box.min).z());
+  constexpr std::array<std::array<std::int32_t, 4>, 6> faces{
+      {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
+  for (const auto& f : faces) {
+    mesh.triangles.push_back({f[0], f[1], f[2]});
+    mesh.triangles.push_back({f[0], f[2], f[3]});
+  }
+  return mesh;
+}
+
+/// Signed distances at the nodes of a grid, and the surface points on its edges.
+class Contour {
+ public:
+  Contour(const Shape& shape, const Aabb& box, double spacing, int dim)
+      : shape_(shape), spacing_(spacing), origin_(box.lo.array() - 1.0 * spacing) {
+    if (dim == 2) origin_.y() = 0.0;
+    for (int k = 0; k < 3; ++k)
+      n_[k] = dim == 2 && k == 1
+                  ? 1
+                  : static_cast<Index>(std::ceil((box.hi[k] - box.lo[k]) / spacing)) + 3;
+    value_.resize(at(n_[0] * n_[1] * n_[2]));
+    parallel_for(static_cast<Index>(value_.size()), [&](Index i) {
+      const double d = distance_bound(shape_, place(i));
+      // A node exactly on the surface would make triangles without area.
+      const double least = 1e-6 * spacing_;
+      value_[at(i)] = std::abs(d) < least ? (d < 0.0 ? -least : least) : d;
+    });
+  }
+
+  /// Marching tetrahedra: six around a diagonal of each cell, the same in all, so faces match.
+  void triangulate() {
+    constexpr int paths[6][2] = {{1, 2}, {2, 1}, {0, 2}, {2, 0}, {0, 1}, {1, 0}};
+    const std::array<Index, 3> step{1, n_[0], n_[0] * n_[1]};
+    for (Index z = 0; z + 1 < n_[2]; ++z)
+      for (Index y = 0; y + 1 < n_[1]; ++y)
+        for (Index x = 0; x + 1 < n_[0]; ++x) {
+          const Index o = (z * n_[1] + y) * n_[0] + x;
+          // The bound tells at once that most cells are far from the surface.
+          if (std::abs(value_[at(o)]) > 1.75 * spacing_) continue;
+          for (int t = 0; t < 6; ++t) {
+            const int last = paths[t][0], middle = paths[t][1], first = 3 - last - middle;
+            const Index a = o + step[at(first)], b = a + step[at(middle)];
+            tetrahedron({o, a, b, b + step[at(last)]});
+          }
+        }
+  }
+
+  /// Marching squares; the two ambiguous cases are settled by the middle of the square.
+  void outline() {
+    for (Index z = 0; z + 1 < n_[2]; ++z)
+      for (Index x = 0; x + 1 < n_[0]; ++x) {
+        const Index o = z * n_[0] + x;
+        const std::array<Index, 4> c{o, o + 1, o + 1 + n_[0], o + n_[0]};  // counter-clockwise
+        // An edge that leaves the solid starts a segment, one that enters ends it: solid to the left.
+        std::array<std::int32_t, 4> leave{}, enter{};
+        int leaves = 0, enters = 0, first_leave = 0, first_enter = 0;
+        for (int k = 0; k < 4; ++k) {
+          const Index a = c[at(k)], b = c[at((k + 1) % 4)];
+          if (inside(a) && !inside(b)) {
+            if (leaves == 0) first_leave = k;
+            leave[at(leaves++)] = crossing(a, b);
+          } else if (!inside(a) && inside(b)) {
+            if (enters == 0) first_enter = k;
+            enter[at(enters++)] = crossing(a, b);
+          }
+        }
+        if (leaves == 1) add_segment(leave[0], enter[0]);
+        if (leaves == 2) {
+          const Vec3 middle = 0.5 * (place(c[0]) + place(c[2]));
+          const bool solid_middle = distance_bound(shape_, middle) < 0.0;
+          // Connected solid: cut off the empty corner, whose entering edge follows the leaving one.
+          const bool follows = (first_enter == first_leave + 1) == solid_middle;
+          add_segment(leave[0], enter[follows ? 0 : 1]);
+          add_segment(leave[1], enter[follows ? 1 : 0]);
+        }
+      }
+  }
+
+  SurfaceMesh take() { return std::move(mesh_); }
+
+ private:
+  Vec3 place(Index i) const {
+    return origin_ + spacing_ * Vec3(static_cast<double>(i % n_[0]), static_cast<double>(i / n_[0] % n_[1]),
+                                     static_cast<double>(i / (n_[0] * n_[1])));
+  }
+  bool inside(Index i) const { return value_[at(i)] < 0.0; }
+
+  std::int32_t crossing(Index a, Index b) {
+    if (a > b) std::swap(a, b);
+    const auto [it, fresh] = seen_.try_emplace(static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint64_t>(b),
+                                               static_cast<std::int32_t>(mesh_.points.size()));
+    if (fresh) {
+      // Regula falsi with halving: linear between the nodes is off where the surface is curved.
+      Vec3 p = place(a), q = place(b);
+      double vp = value_[at(a)], vq = value_[at(b)];
+      Vec3 m = p;
+      for (int k = 0; k < 8; ++k) {
+        const double s = k % 3 == 2 ? 0.5 : vp / (vp - vq);
+        m = p + s * (q - p);
+        const double v = distance_bound(shape_, m);
+        if (std::abs(v) < 1e-7 * spacing_) break;
+        ((v < 0.0) == (vp < 0.0) ? p : q) = m;
+        ((v < 0.0) == (vp < 0.0) ? vp : vq) = v;
+      }
+      mesh_.points.push_back(m);
+    }
+    return it->second;
+  }
+
+  void add_segment(std::int32_t a, std::int32_t b) { mesh_.segments.push_back({a, b}); }
+
+  void add_triangle(std::int32_t a, std::int32_t b, std::int32_t c, const Vec3& outward) {
+    const Vec3 &p = mesh_.points[at(a)], &q = mesh_.points[at(b)], &r = mesh_.points[at(c)];
+    if ((q - p).cross(r - p).dot(outward) < 0.0) std::swap(b, c);
+    mesh_.triangles.push_back({a, b, c});
+  }
+
+  void tetrahedron(const std::array<Index, 4>& corner) {
+    std::array<Index, 4> in{}, out{};
+    int ins = 0, outs = 0;
+    for (const Index c : corner) (inside(c) ? in[at(ins++)] : out[at(outs++)]) = c;
+    if (ins == 0 || outs == 0) return;
+    Vec3 outward = Vec3::Zero();
+    for (int k = 0; k < outs; ++k) outward += place(out[at(k)]) / outs;
+    for (int k = 0; k < ins; ++k) outward -= place(in[at(k)]) / ins;
+    if (ins == 2) {
+      const std::int32_t a = crossing(in[0], out[0]), b = crossing(in[0], out[1]),
+                         c = crossing(in[1], out[1]), d = crossing(in[1], out[0]);
+      add_triangle(a, b, c, outward);
+      add_triangle(a, c, d, outward);
+      return;
+    }
+    const Index tip = ins == 1 ? in[0] : out[0];
+    const auto& base = ins == 1 ? out : in;
+    add_triangle(crossing(tip, base[0]), crossing(tip, base[1]), crossing(tip, base[2]), outward);
+  }
+
+  const Shape& shape_;
+  double spacing_;
+  Vec3 origin_;
+  std::array<Index, 3> n_{};
+  std::vector<double> value_;
+  std::unordered_map<std::uint64_t, std::int32_t> seen_;
+  SurfaceMesh mesh_;
+};
+
+/// A shape cut by the clip box, so that an unbounded one closes there.
+struct Clipped final : BoundedShape {
+  const Shape* shape = nullptr;
+  Aabb clip;
+  double bound(const Vec3& p) const override {
+    return std::max(distance_bound(*shape, p), box_distance(p, clip.lo, clip.hi, flat));
+  }
+  double signed_distance(const Vec3& p) const override { return bound(p); }
+  Aabb box() const override { return clip; }
+};
+
+}  // namespace
+
+SurfaceMesh surface_mesh(const Shape& shape, double spacing, int dim, const Aabb& clip) {
+  Aabb box = shape.box();
+  bool cut = false;
+  if (!clip.empty()) {
+    for (int k = 0; k < 3; ++k)
+      if (!(dim == 2 && k == 1)) cut = cut || box.lo[k] < clip.lo[k] || box.hi[k] > clip.hi[k];
+    box.lo = box.lo.cwiseMax(clip.lo);
+    box.hi = box.hi.cwiseMin(clip.hi);
+  }
+  if (dim == 2) box.lo.y() = box.hi.y() = 0.0;
+  if (box.empty()) return {};
+  if (!box.lo.allFinite() || !box.hi.allFinite())
+    throw Error(ExitCode::usage, "the shape is unbounded and has no finite surface to show");
+  if (!cut) {
+    if (const auto* b = dynamic_cast<const Box*>(&shape))
+      return dim == 3 ? box_surface(*b)
+                      : closed_outline({{b->min.x(), b->min.z()}, {b->max.x(), b->min.z()},
+                                        {b->max.x(), b->max.z()}, {b->min.x(), b->max.z()}});
+    if (const auto* p = dynamic_cast<const Polygon*>(&shape); p && dim == 2)
+      return closed_outline(p->corners());
+    if (const auto* s = dynamic_cast<const Stl*>(&shape); s && dim == 3)
+      return {s->triangles().points, s->triangles().faces, {}};
+  }
+  // At most 2e7 nodes, so that a shape far larger than the spacing does not exhaust the memory.
+  const Vec3 size = box.hi - box.lo;
+  const auto nodes = [&](double h) {
+    double n = 1.0;
+    for (int k = 0; k < 3; ++k)
+      if (!(dim == 2 && k == 1)) n *= size[k] / h + 3.0;
+    return n;
+  };
+  while (nodes(spacing) > 2e7) spacing *= 1.1;
+  Clipped cut_shape;
+  cut_shape.shape = &shape;
+  cut_shape.clip = box;
+  cut_shape.flat = dim == 2;
+  Contour contour(cut ? static_cast<const Shape&>(cut_shape) : shape, box, spacing, dim);
+  if (dim == 3) contour.triangulate();
+  else contour.outline();
+  return contour.take();
+}
+
+}  // namespace sphgeo
