@@ -180,7 +180,9 @@ void json_mapping(Json& out, const std::vector<SchemaPart>& parts, Json& definit
       out["required"].push_back(key.name());
     } else {
       const Node value = key.type().write(key.member_of(static_cast<const void*>(d.object)), {});
-      if (value.kind != Node::Kind::null) property["default"] = json_value(value);
+      // A section's default follows from those of its keys.
+      const bool section = value.kind == Node::Kind::map && !value.entries.empty();
+      if (value.kind != Node::Kind::null && !section) property["default"] = json_value(value);
     }
     out["properties"][key.name()] = std::move(property);
   }

@@ -140,6 +140,8 @@ class Builder final : public YAML::EventHandler {
     } else if (!top.has_key) {
       take_key(top, node);
     } else {
+      // An empty value has no place of its own: the parser's mark is that of whatever follows.
+      if (node.kind == Node::Kind::null) node.place = top.key_place;
       if (top.keep) top.node.entries.push_back({top.key, top.key_place, std::move(node)});
       top.has_key = false;
     }
