@@ -30,13 +30,15 @@ constexpr double random_uniform(std::uint64_t seed, std::uint64_t index) {
 
 inline constexpr std::uint64_t fnv1a_start = 0xcbf29ce484222325u;
 
-/// FNV-1a, 64 bits. Pass the result of one call as `state` of the next to continue.
-inline std::uint64_t fnv1a(const void* data, std::size_t bytes, std::uint64_t state = fnv1a_start) {
+/// FNV-1a of raw memory, 64 bits. Pass the result of one call as `state` of the next to continue.
+inline std::uint64_t fnv1a_bytes(const void* data, std::size_t bytes,
+                                 std::uint64_t state = fnv1a_start) {
   const auto* p = static_cast<const unsigned char*>(data);
   for (std::size_t k = 0; k < bytes; ++k) state = (state ^ p[k]) * 0x100000001b3u;
   return state;
 }
 
+/// FNV-1a of a text.
 constexpr std::uint64_t fnv1a(std::string_view text, std::uint64_t state = fnv1a_start) {
   for (const char c : text) state = (state ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
   return state;

@@ -65,20 +65,24 @@ template <int Dim>
 void CellGrid<Dim>::choose_cells(const std::int32_t* lo, const std::int32_t* hi, double reach) {
   // Few enough cells that clearing the table never costs more than the search.
   const double most_cells = std::max(16.0 * static_cast<double>(size_), 65536.0);
-  double edge[3] = {1, 1, 1};
-  for (int d = 0; d < Dim; ++d) edge[d] = std::max(reach * frame_.per_quantum, 1.0);
-  edge[0] *= 0.5;
+  double span[3] = {0, 0, 0};
+  for (int d = 0; d < Dim; ++d) {
+    if (size_ > 0) span[d] = static_cast<double>(hi[d]) - static_cast<double>(lo[d]);
+    lowest_[d] = size_ > 0 ? static_cast<double>(lo[d]) : 0.0;
+    edge_[d] = std::max(reach * frame_.per_quantum, 1.0);
+  }
+  // Short cells along x, as rows are cut there to what a search needs; a half was fastest.
+  edge_[0] *= 0.5;
   for (;;) {
     double cells = 1.0;
     for (int d = 0; d < Dim; ++d) {
-      const double span = size_ > 0 ? static_cast<double>(hi[d]) - static_cast<double>(lo[d]) : 0.0;
-      lowest_[d] = size_ > 0 ? lo[d] : 0;
-      count_[d] = static_cast<std::int64_t>(span / edge[d]) + 1;
-      per_cell_[d] = 1.0 / edge[d];
-      cells *= static_cast<double>(count_[d]);
+      last_[d] = std::floor(span[d] / edge_[d]);
+      count_[d] = static_cast<std::int64_t>(last_[d]) + 1;
+      per_cell_[d] = 1.0 / edge_[d];
+      cells *= last_[d] + 1.0;
     }
     if (cells <= most_cells) break;
-    for (double& e : edge) e *= 1.25;
+    for (double& edge : edge_) edge *= 1.25;
   }
   start_.assign(static_cast<std::size_t>(count_[0] * count_[1] * count_[2]) + 1, 0);
 }

@@ -1,6 +1,8 @@
 #pragma once
 // A grid of cells over one particle set: sorts the particles and finds those near a point.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -40,7 +42,7 @@ class CellGrid {
     std::int32_t x[Dim];
     for (int d = 0; d < Dim; ++d) x[d] = frame_.to_fixed(at[d], d);
     const double limit = radius * frame_.per_quantum;
-    for_each_row(x, static_cast<std::int64_t>(limit) + 1, [&](std::size_t begin, std::size_t end) {
+    for_each_row(x, x, limit, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
         double r2 = 0.0;
         for (int d = 0; d < Dim; ++d) {
@@ -55,20 +57,27 @@ class CellGrid {
 
   // ---- for neighbor lists ----
 
-  /// Calls f(begin, end) for ranges of places (see place_*) that hold all particles whose
-  /// coordinates differ from x by at most `reach` quanta; in cell order.
+  /// Calls f(begin, end) for ranges of places (see place_*) that hold all particles nearer than
+  /// `reach` to the box from lo to hi, all in quanta; in cell order. A range is a row of cells, cut
+  /// where no point of the box can reach.
   template <class F>
-  void for_each_row(const std::int32_t* x, std::int64_t reach, F&& f) const {
-    std::int64_t lo[3] = {0, 0, 0}, hi[3] = {0, 0, 0};
-    for (int d = 0; d < Dim; ++d) {
-      lo[d] = cell(x[d] - reach, d);
-      hi[d] = cell(x[d] + reach, d);
+  void for_each_row(const std::int32_t* lo, const std::int32_t* hi, double reach, F&& f) const {
+    // One quantum more than enough: rounding of cell edges can lose nobody.
+    const double all = reach + 1.0;
+    std::int64_t first[3] = {0, 0, 0}, last[3] = {0, 0, 0};
+    for (int d = 1; d < Dim; ++d) {
+      first[d] = cell(lo[d] - all, d);
+      last[d] = cell(hi[d] + all, d);
     }
-    for (std::int64_t c2 = lo[2]; c2 <= hi[2]; ++c2) {
-      for (std::int64_t c1 = lo[1]; c1 <= hi[1]; ++c1) {
+    for (std::int64_t c2 = first[2]; c2 <= last[2]; ++c2) {
+      const double left2 = all * all - (Dim > 2 ? gap2(lo, hi, c2, 2) : 0.0);
+      for (std::int64_t c1 = first[1]; c1 <= last[1]; ++c1) {
+        const double half2 = left2 - (Dim > 1 ? gap2(lo, hi, c1, 1) : 0.0);
+        if (half2 < 0.0) continue;
+        const double half = std::sqrt(half2) + 1.0;
         const std::int64_t row = (c2 * count_[1] + c1) * count_[0];
-        const std::size_t begin = start_[static_cast<std::size_t>(row + lo[0])];
-        const std::size_t end = start_[static_cast<std::size_t>(row + hi[0] + 1)];
+        const std::size_t begin = start_[static_cast<std::size_t>(row + cell(lo[0] - half, 0))];
+        const std::size_t end = start_[static_cast<std::size_t>(row + cell(hi[0] + half, 0) + 1)];
         if (begin < end) f(begin, end);
       }
     }
@@ -81,11 +90,17 @@ class CellGrid {
 
  private:
   // Monotone in x, and clamped: the cells of an interval hold all particles of the interval.
-  std::int64_t cell(std::int64_t x, int d) const {
-    const std::int64_t offset = x - lowest_[d];
-    if (offset <= 0) return 0;
-    const auto c = static_cast<std::int64_t>(static_cast<double>(offset) * per_cell_[d]);
-    return c < count_[d] ? c : count_[d] - 1;
+  std::int64_t cell(double x, int d) const {
+    const double c = (x - lowest_[d]) * per_cell_[d];
+    return c > 0.0 ? static_cast<std::int64_t>(std::min(c, last_[d])) : 0;
+  }
+
+  // Squared distance along axis d from a box to cell c; 0 where they overlap, a little less than
+  // true at most.
+  double gap2(const std::int32_t* lo, const std::int32_t* hi, std::int64_t c, int d) const {
+    const double begin = lowest_[d] + static_cast<double>(c) * edge_[d];
+    const double gap = std::max({begin - hi[d] - 1.0, lo[d] - begin - edge_[d] - 1.0, 0.0});
+    return gap * gap;
   }
 
   void choose_cells(const std::int32_t* lo, const std::int32_t* hi, double reach);
@@ -93,9 +108,11 @@ class CellGrid {
 
   FixedPoint<Dim> frame_;
   std::size_t size_ = 0;
-  std::int64_t lowest_[3] = {0, 0, 0};  // corner of the box, in quanta
-  std::int64_t count_[3] = {1, 1, 1};   // cells along each axis
-  double per_cell_[3] = {0, 0, 0};      // 1 / edge of a cell, in quanta
+  double lowest_[3] = {0, 0, 0};       // corner of the box, in quanta
+  double edge_[3] = {1, 1, 1};         // edge of a cell, in quanta
+  double per_cell_[3] = {1, 1, 1};     // 1 / edge
+  std::int64_t count_[3] = {1, 1, 1};  // cells along each axis
+  double last_[3] = {0, 0, 0};         // count - 1
   std::vector<std::uint32_t> start_{0, 0};
   AlignedVector<std::uint32_t> order_;
   AlignedVector<std::int32_t> coordinate_[Dim];

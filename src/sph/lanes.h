@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
+#include <utility>
 
 #if defined(__AVX__)
 #include <immintrin.h>
@@ -211,13 +212,22 @@ Lanes<T, W> reciprocal(Lanes<T, W> a) {
   return L(T(1)) / a;
 }
 
+namespace detail {
+template <int From, class Raw, int... K>
+auto part(Raw a, std::integer_sequence<int, K...>) {
+  return __builtin_shufflevector(a, a, (From + K)...);
+}
+}  // namespace detail
+
 /// Sum of all lanes, by halves: lane k and lane k + W/2 first.
 template <class T, int W>
 T sum(Lanes<T, W> a) {
-  std::array<T, static_cast<std::size_t>(W)> v = std::bit_cast<std::array<T, static_cast<std::size_t>(W)>>(a.raw);
-  for (std::size_t half = W / 2; half > 0; half /= 2)
-    for (std::size_t k = 0; k < half; ++k) v[k] += v[k + half];
-  return v[0];
+  if constexpr (W == 2) {
+    return a.raw[0] + a.raw[1];
+  } else {
+    constexpr auto half = std::make_integer_sequence<int, W / 2>{};
+    return sum(Lanes<T, W / 2>(detail::part<0>(a.raw, half) + detail::part<W / 2>(a.raw, half)));
+  }
 }
 
 // ---- lengths -----------------------------------------------------------------------------------
@@ -249,35 +259,48 @@ inline void load_records(const T* base, const std::uint32_t* offset, Lanes<T>* o
   constexpr int width = native_width<T>;
 #if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
   if constexpr (std::same_as<T, float>) {
-    // Four quarters of a register come from four records, so that the transposition stays within
-    // quarters of 4x4 numbers.
-    const auto four = [&](int k, int half) {
-      __m512 v = _mm512_castps128_ps512(_mm_load_ps(base + offset[k] + half));
-      v = _mm512_maskz_insertf32x4(detail::all_16, v, _mm_load_ps(base + offset[k + 1] + half), 1);
-      v = _mm512_maskz_insertf32x4(detail::all_16, v, _mm_load_ps(base + offset[k + 2] + half), 2);
-      return _mm512_maskz_insertf32x4(detail::all_16, v, _mm_load_ps(base + offset[k + 3] + half), 3);
+    // Record k in the lower half of a register, record k + 8 in the upper.
+    const auto two = [&](int k) {
+      return _mm512_maskz_insertf32x8(detail::all_16,
+                                      _mm512_castps256_ps512(_mm256_load_ps(base + offset[k])),
+                                      _mm256_load_ps(base + offset[k + 8]), 1);
     };
-    for (int half = 0; half < 8; half += 4) {
-      const __m512 a = four(0, half), b = four(4, half), c = four(8, half), d = four(12, half);
-      const __m512 ab_lo = _mm512_maskz_unpacklo_ps(detail::all_16, a, b), ab_hi = _mm512_maskz_unpackhi_ps(detail::all_16, a, b);
-      const __m512 cd_lo = _mm512_maskz_unpacklo_ps(detail::all_16, c, d), cd_hi = _mm512_maskz_unpackhi_ps(detail::all_16, c, d);
-      out[half + 0].raw = _mm512_maskz_shuffle_ps(detail::all_16, ab_lo, cd_lo, 0x44);
-      out[half + 1].raw = _mm512_maskz_shuffle_ps(detail::all_16, ab_lo, cd_lo, 0xee);
-      out[half + 2].raw = _mm512_maskz_shuffle_ps(detail::all_16, ab_hi, cd_hi, 0x44);
-      out[half + 3].raw = _mm512_maskz_shuffle_ps(detail::all_16, ab_hi, cd_hi, 0xee);
+    // Transposes four records; quarters 0 and 2 of v[f] hold number f, quarters 1 and 3 f + 4.
+    const auto four = [&](int k, __m512* v) {
+      const __m512 a = two(k), b = two(k + 1), c = two(k + 2), d = two(k + 3);
+      const __m512 ab_lo = _mm512_maskz_unpacklo_ps(detail::all_16, a, b);
+      const __m512 ab_hi = _mm512_maskz_unpackhi_ps(detail::all_16, a, b);
+      const __m512 cd_lo = _mm512_maskz_unpacklo_ps(detail::all_16, c, d);
+      const __m512 cd_hi = _mm512_maskz_unpackhi_ps(detail::all_16, c, d);
+      v[0] = _mm512_maskz_shuffle_ps(detail::all_16, ab_lo, cd_lo, 0x44);
+      v[1] = _mm512_maskz_shuffle_ps(detail::all_16, ab_lo, cd_lo, 0xee);
+      v[2] = _mm512_maskz_shuffle_ps(detail::all_16, ab_hi, cd_hi, 0x44);
+      v[3] = _mm512_maskz_shuffle_ps(detail::all_16, ab_hi, cd_hi, 0xee);
+    };
+    __m512 v[4], w[4];
+    four(0, v);
+    four(4, w);
+    for (int f = 0; f < 4; ++f) {
+      out[f].raw = _mm512_maskz_shuffle_f32x4(detail::all_16, v[f], w[f], 0x88);
+      out[f + 4].raw = _mm512_maskz_shuffle_f32x4(detail::all_16, v[f], w[f], 0xdd);
     }
   } else {
-    // Likewise with quarters of 2x2 numbers.
-    const auto four = [&](int k, int pair) {
-      __m512d v = _mm512_castpd128_pd512(_mm_load_pd(base + offset[k] + pair));
-      v = _mm512_maskz_insertf64x2(detail::all_8, v, _mm_load_pd(base + offset[k + 1] + pair), 1);
-      v = _mm512_maskz_insertf64x2(detail::all_8, v, _mm_load_pd(base + offset[k + 2] + pair), 2);
-      return _mm512_maskz_insertf64x2(detail::all_8, v, _mm_load_pd(base + offset[k + 3] + pair), 3);
+    // Likewise, four numbers of records k and k + 4 at a time.
+    const auto two = [&](int k, int half) {
+      return _mm512_maskz_insertf64x4(
+          detail::all_8, _mm512_castpd256_pd512(_mm256_load_pd(base + offset[k] + half)),
+          _mm256_load_pd(base + offset[k + 4] + half), 1);
     };
-    for (int pair = 0; pair < 8; pair += 2) {
-      const __m512d a = four(0, pair), b = four(4, pair);
-      out[pair].raw = _mm512_maskz_unpacklo_pd(detail::all_8, a, b);
-      out[pair + 1].raw = _mm512_maskz_unpackhi_pd(detail::all_8, a, b);
+    for (int half = 0; half < 8; half += 4) {
+      const __m512d a = two(0, half), b = two(1, half), c = two(2, half), d = two(3, half);
+      const __m512d ab_lo = _mm512_maskz_unpacklo_pd(detail::all_8, a, b);
+      const __m512d ab_hi = _mm512_maskz_unpackhi_pd(detail::all_8, a, b);
+      const __m512d cd_lo = _mm512_maskz_unpacklo_pd(detail::all_8, c, d);
+      const __m512d cd_hi = _mm512_maskz_unpackhi_pd(detail::all_8, c, d);
+      out[half + 0].raw = _mm512_maskz_shuffle_f64x2(detail::all_8, ab_lo, cd_lo, 0x88);
+      out[half + 1].raw = _mm512_maskz_shuffle_f64x2(detail::all_8, ab_hi, cd_hi, 0x88);
+      out[half + 2].raw = _mm512_maskz_shuffle_f64x2(detail::all_8, ab_lo, cd_lo, 0xdd);
+      out[half + 3].raw = _mm512_maskz_shuffle_f64x2(detail::all_8, ab_hi, cd_hi, 0xdd);
     }
   }
 #elif defined(__AVX2__) && defined(__FMA__)
@@ -338,20 +361,25 @@ inline constexpr auto front_lanes = make_front_lanes();
 }  // namespace detail
 #endif
 
-/// Appends the values of the lanes that are kept (mask -1) to out, in order, and returns the new
-/// end. Writes up to a full register past it.
-inline std::uint32_t* append_kept(std::uint32_t* out, IntLanes values, IntLanes kept) {
+/// Appends to out, in order, the values of the lanes where distance < limit and value != excluded;
+/// returns the new end. Writes up to a full register past it.
+inline std::uint32_t* append_below(std::uint32_t* out, IntLanes values, FloatLanes distance,
+                                   FloatLanes limit, std::int32_t excluded) {
 #if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
   // Compressing in the register and storing all of it: compressing stores are slow on some machines.
-  const __mmask16 mask = _mm512_movepi32_mask(std::bit_cast<__m512i>(kept));
-  _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(mask, std::bit_cast<__m512i>(values)));
-  return out + std::popcount(static_cast<std::uint32_t>(mask));
-#elif defined(__AVX2__) && defined(__FMA__)
-  const auto mask =
-      static_cast<std::uint32_t>(_mm256_movemask_ps(std::bit_cast<__m256>(kept)));
+  const auto v = std::bit_cast<__m512i>(values);
+  const __mmask16 kept =
+      _mm512_mask_cmplt_ps_mask(_mm512_cmpneq_epi32_mask(v, _mm512_set1_epi32(excluded)),
+                                distance.raw, limit.raw);
+  _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(kept, v));
+  return out + std::popcount(static_cast<std::uint32_t>(kept));
+#else
+  const IntLanes kept = (distance < limit) & (values != excluded);
+#if defined(__AVX2__) && defined(__FMA__)
+  const auto mask = static_cast<std::uint32_t>(_mm256_movemask_ps(std::bit_cast<__m256>(kept)));
   const __m256i shifts = _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28);
-  const __m256i lanes = _mm256_srlv_epi32(
-      _mm256_set1_epi32(static_cast<int>(detail::front_lanes[mask])), shifts);
+  const __m256i lanes =
+      _mm256_srlv_epi32(_mm256_set1_epi32(static_cast<int>(detail::front_lanes[mask])), shifts);
   _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
                       _mm256_permutevar8x32_epi32(std::bit_cast<__m256i>(values), lanes));
   return out + std::popcount(mask);
@@ -361,6 +389,7 @@ inline std::uint32_t* append_kept(std::uint32_t* out, IntLanes values, IntLanes 
     out += kept[k] != 0;
   }
   return out;
+#endif
 #endif
 }
 

@@ -1,6 +1,9 @@
 #include "sph/neighbor_list.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -10,68 +13,147 @@ namespace sphgeo {
 
 namespace {
 
-// Appends the sources of places [begin, end) that are near x to out; returns the new end.
+constexpr auto width = static_cast<std::size_t>(FloatLanes::width);
+// Room for a full register past the end of any list.
+constexpr std::size_t slack = 2 * NeighborList::padding;
+
+IntLanes load_ints(const void* from) {
+  IntLanes v;
+  std::memcpy(&v, from, sizeof v);
+  return v;
+}
+
+FloatLanes to_float(IntLanes v) { return FloatLanes(__builtin_convertvector(v, FloatLanes::Raw)); }
+
+// A search in units in which all differences are exact in single precision: quanta, or the power of
+// two times a quantum that leaves 23 bits for four times the radius. So distances are symmetric.
+struct Scale {
+  int shift = 0;      // coordinates in these units: quanta >> shift
+  double reach = 0;   // radius in quanta
+  float limit = 0;    // squared radius in these units
+
+  explicit Scale(double radius_in_quanta) : reach(radius_in_quanta) {
+    shift = std::max(0, std::ilogb(std::max(reach, 1.0)) + 3 - 23);
+    const double r = std::ldexp(reach, -shift);
+    limit = static_cast<float>(r * r);
+  }
+};
+
+// The sources near a group of targets, copied together.
 template <int Dim>
-std::uint32_t* search_row(const CellGrid<Dim>& sources, const std::int32_t* x, float limit,
-                          std::int32_t self, std::size_t begin, std::size_t end,
-                          std::uint32_t* out) {
-  constexpr auto width = static_cast<std::size_t>(FloatLanes::width);
-  IntLanes lane{};
-  for (int k = 0; k < FloatLanes::width; ++k) lane[k] = k;
-  const auto load = [](const void* from) {
-    IntLanes v;
-    __builtin_memcpy(&v, from, sizeof v);
-    return v;
-  };
-  for (std::size_t k = begin; k < end; k += width) {
-    FloatLanes r2 = 0.0f;
-    for (int d = 0; d < Dim; ++d) {
-      // Exact: all coordinates are in [0, 2^31).
-      const IntLanes difference = x[d] - load(sources.place_coordinate(d) + k);
-      const FloatLanes dx = FloatLanes(__builtin_convertvector(difference, FloatLanes::Raw));
-      r2 += dx * dx;
-    }
-    const IntLanes particle = load(sources.place_particle() + k);
-    const auto left = static_cast<std::int32_t>(std::min(end - k, width));
-    const IntLanes near = (r2 < FloatLanes(limit)) & (lane < left) & (particle != self);
-    out = append_kept(out, particle << 3, near);
+struct Candidates {
+  std::size_t size = 0;
+  std::int32_t corner[Dim];
+  AlignedVector<float> x[Dim];  // from the corner
+  AlignedVector<std::uint32_t> offset;
+
+  // Collects all sources nearer than the reach to the box.
+  void collect(const CellGrid<Dim>& sources, const std::int32_t* lo, const std::int32_t* hi,
+               const Scale& scale) {
+    size = 0;
+    for (int d = 0; d < Dim; ++d) corner[d] = lo[d] >> scale.shift;
+    sources.for_each_row(lo, hi, scale.reach, [&](std::size_t begin, std::size_t end) {
+      make_room(size + (end - begin) + slack);
+      for (std::size_t k = begin; k < end; k += width) {
+        const std::size_t to = size + (k - begin);
+        for (int d = 0; d < Dim; ++d) {
+          const IntLanes at = load_ints(sources.place_coordinate(d) + k) >> scale.shift;
+          const FloatLanes from_corner = to_float(at - corner[d]);
+          std::memcpy(x[d].data() + to, &from_corner, sizeof from_corner);
+        }
+        const IntLanes particle = load_ints(sources.place_particle() + k) << 3;
+        std::memcpy(offset.data() + to, &particle, sizeof particle);
+      }
+      size += end - begin;
+    });
+    // Out of reach.
+    make_room(size + slack);
+    for (std::size_t k = size; k < size + width; ++k) x[0][k] = 1e18f;
+  }
+
+  void make_room(std::size_t n) {
+    if (n <= offset.size()) return;
+    for (auto& column : x) column.resize(2 * n);
+    offset.resize(2 * n);
+  }
+};
+
+// Writes the candidates nearer to `at` than the limit to out and returns the end.
+template <int Dim>
+std::uint32_t* select_near(const Candidates<Dim>& candidates, const float* at, float limit,
+                           std::int32_t self_offset, std::uint32_t* out) {
+  for (std::size_t k = 0; k < candidates.size; k += width) {
+    const auto square = [&](int d) {
+      FloatLanes dx;
+      std::memcpy(&dx, candidates.x[d].data() + k, sizeof dx);
+      dx -= at[d];
+      return dx * dx;
+    };
+    FloatLanes r2 = square(0);
+    for (int d = 1; d < Dim; ++d) r2 += square(d);
+    const IntLanes offset = load_ints(candidates.offset.data() + k);
+    out = append_below(out, offset, r2, limit, self_offset);
   }
   return out;
 }
 
 template <int Dim>
-void search_block(std::span<const Vec<Dim>> targets, const CellGrid<Dim>& sources, double radius,
-                  Pairing pairing, Index begin, Index end, NeighborList::Block& block) {
+void search_block(std::span<const Vec<Dim>> targets, const CellGrid<Dim>& sources,
+                  const Scale& scale, Pairing pairing, Index begin, Index end,
+                  NeighborList::Block& block) {
   const FixedPoint<Dim>& frame = sources.frame();
-  const double reach = radius * frame.per_quantum;
-  const auto limit = static_cast<float>(reach * reach);
   const auto null_offset = static_cast<std::uint32_t>(sources.size() * 8);
-  // Room for a full register past the end of any list.
-  constexpr std::size_t slack = 2 * NeighborList::padding;
+  // Targets are searched in groups of neighbors in memory; a group fits a box of this size.
+  double box_size[3] = {scale.reach, scale.reach, scale.reach};
+  box_size[0] *= 0.5;
+  std::array<std::array<std::int32_t, Dim>, block_size> position;
+  const auto count = static_cast<std::size_t>(end - begin);
+  for (std::size_t k = 0; k < count; ++k)
+    for (int d = 0; d < Dim; ++d)
+      position[k][static_cast<std::size_t>(d)] =
+          frame.to_fixed(targets[static_cast<std::size_t>(begin) + k][d], d);
 
   block.targets.clear();
   block.begin.clear();
   block.count.clear();
   std::size_t used = 0;
-  for (Index i = begin; i < end; ++i) {
-    std::int32_t x[Dim];
-    for (int d = 0; d < Dim; ++d)
-      x[d] = frame.to_fixed(targets[static_cast<std::size_t>(i)][d], d);
-    const std::int32_t self = pairing == Pairing::within ? static_cast<std::int32_t>(i) : -1;
-    const std::size_t first = used;
-    sources.for_each_row(
-        x, static_cast<std::int64_t>(reach) + 1, [&](std::size_t row_begin, std::size_t row_end) {
-          const std::size_t need = used + (row_end - row_begin) + slack;
-          if (need > block.entries.size()) block.entries.resize(need + need / 4);
-          std::uint32_t* out = block.entries.data() + used;
-          out = search_row<Dim>(sources, x, limit, self, row_begin, row_end, out);
-          used = static_cast<std::size_t>(out - block.entries.data());
-        });
-    if (used == first && pairing == Pairing::across) continue;
-    block.targets.push_back(static_cast<std::uint32_t>(i));
-    block.begin.push_back(static_cast<std::uint32_t>(first));
-    block.count.push_back(static_cast<std::uint32_t>(used - first));
-    while (used % NeighborList::padding != 0) block.entries[used++] = null_offset;
+  Candidates<Dim> candidates;
+  for (std::size_t group = 0; group < count;) {
+    std::array<std::int32_t, Dim> lo = position[group], hi = lo;
+    std::size_t group_end = group + 1;
+    for (; group_end < count; ++group_end) {
+      auto new_lo = lo, new_hi = hi;
+      bool fits = true;
+      for (std::size_t d = 0; d < Dim; ++d) {
+        new_lo[d] = std::min(lo[d], position[group_end][d]);
+        new_hi[d] = std::max(hi[d], position[group_end][d]);
+        fits &= static_cast<double>(new_hi[d] - new_lo[d]) <= box_size[d];
+      }
+      if (!fits) break;
+      lo = new_lo;
+      hi = new_hi;
+    }
+    candidates.collect(sources, lo.data(), hi.data(), scale);
+
+    for (; group < group_end; ++group) {
+      const auto i = static_cast<std::uint32_t>(begin) + static_cast<std::uint32_t>(group);
+      float at[Dim];
+      for (std::size_t d = 0; d < Dim; ++d)
+        at[d] = static_cast<float>((position[group][d] >> scale.shift) - candidates.corner[d]);
+      if (const std::size_t need = used + candidates.size + slack; need > block.entries.size())
+        block.entries.resize(need + need / 4);
+      std::uint32_t* first = block.entries.data() + used;
+      const std::uint32_t* last = select_near<Dim>(
+          candidates, at, scale.limit,
+          pairing == Pairing::within ? static_cast<std::int32_t>(i << 3) : -1, first);
+      const auto found = static_cast<std::size_t>(last - first);
+      if (found == 0 && pairing == Pairing::across) continue;
+      block.targets.push_back(i);
+      block.begin.push_back(static_cast<std::uint32_t>(used));
+      block.count.push_back(static_cast<std::uint32_t>(found));
+      used += found;
+      while (used % NeighborList::padding != 0) block.entries[used++] = null_offset;
+    }
   }
 }
 
@@ -87,8 +169,9 @@ void NeighborList::build(std::span<const Vec<Dim>> targets, const CellGrid<Dim>&
   block_count_ = static_cast<std::size_t>((targets_ + block_size - 1) / block_size);
   // Blocks keep their memory from one search to the next.
   if (blocks_.size() < block_count_) blocks_.resize(block_count_);
+  const Scale scale(radius * sources.frame().per_quantum);
   parallel_blocks(targets_, block_size, [&](Index begin, Index end, Index b) {
-    search_block<Dim>(targets, sources, radius, pairing, begin, end,
+    search_block<Dim>(targets, sources, scale, pairing, begin, end,
                       blocks_[static_cast<std::size_t>(b)]);
   });
   active_ = 0;

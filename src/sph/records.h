@@ -92,7 +92,7 @@ template <int Dim, class T, int N>
 RecordView<Dim, T, N> view(const RecordView<Dim, T, N>& a) { return a; }
 
 /// Two record arrays of the same particles, for passes that need more than one record holds. The
-/// position is taken from the first.
+/// position is taken from the first; the second may use all 8 slots.
 template <int Dim, class T>
 RecordView<Dim, T, 2> with(const Records<Dim, T>& a, const Records<Dim, T>& b) {
   return {{&a, &b}};
