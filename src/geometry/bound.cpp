@@ -7,4 +7,19 @@ double distance_bound(const Shape& shape, const Vec3& at) {
   return bounded ? bounded->bound(at) : shape.signed_distance(at);
 }
 
+bool on_inner_seam(const Shape& shape, const Vec3& at, double reach, bool flat) {
+  if (dynamic_cast<const BoundedShape*>(&shape) == nullptr) return false;
+  // Beside a seam the solid goes on in every direction; along it the bound stays zero.
+  double most = -std::numeric_limits<double>::infinity(), least = -most;
+  for (int k = 0; k < 6; ++k) {
+    if (flat && k % 3 == 1) continue;
+    Vec3 p = at;
+    p[k % 3] += k < 3 ? reach : -reach;
+    const double d = distance_bound(shape, p);
+    most = std::max(most, d);
+    least = std::min(least, d);
+  }
+  return most < 1e-2 * reach && least < -0.1 * reach;
+}
+
 }  // namespace sphgeo

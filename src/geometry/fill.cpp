@@ -141,7 +141,8 @@ std::vector<Vec3> fill_lattice(const Shape& shape, double dp, int dim, const Aab
     refuse_absurd(estimate_fill(shape, dp, dim, clip));
   return collect(box, origin.value_or(default_origin(shape, clip)), dp, dim, [&](const Vec3& p) {
     const double d = distance_bound(shape, p);
-    return Verdict{d < -1e-9 * dp, std::abs(d)};
+    if (std::abs(d) <= 1e-9 * dp) return Verdict{on_inner_seam(shape, p, 1e-4 * dp, dim == 2), 0.0};
+    return Verdict{d < 0.0, std::abs(d)};
   });
 }
 

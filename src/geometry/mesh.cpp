@@ -53,9 +53,11 @@ class Contour {
     value_.resize(at(n_[0] * n_[1] * n_[2]));
     parallel_for(static_cast<Index>(value_.size()), [&](Index i) {
       const double d = distance_bound(shape_, place(i));
-      // A node exactly on the surface would make triangles without area.
+      // A node exactly on the surface would make triangles without area; one on a seam is inside.
       const double least = 1e-6 * spacing_;
-      value_[at(i)] = std::abs(d) < least ? (d < 0.0 ? -least : least) : d;
+      const bool solid =
+          d < 0.0 || (d < least && on_inner_seam(shape_, place(i), 1e-3 * spacing_, n_[1] == 1));
+      value_[at(i)] = std::abs(d) < least ? (solid ? -least : least) : d;
     });
   }
 

@@ -1,5 +1,6 @@
 #include "geometry/refine.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -28,13 +29,19 @@ class FootSearch {
     double best = inf;
     auto shoot = [&](const Vec3& direction) {
       // Hits much farther than the best cannot slide to a nearer place than its own descent.
-      const double t = march(direction, 2.0 * best);
-      if (t == inf) return;
+      const double t = march(direction, 2.0 * best, reach_);
+      if (t == inf) return false;
       hits.push_back({direction, t});
       best = std::min(best, t);
+      return true;
     };
     if (n.norm() > 0.1) shoot(n.normalized());
-    for (const Vec3& d : directions(flat_)) shoot(d);
+    std::vector<Vec3> missed;
+    for (const Vec3& d : directions(flat_))
+      if (!shoot(d)) missed.push_back(d);
+    // A ray along a seam creeps; once a length is known it may take longer steps.
+    if (best < inf)
+      for (const Vec3& d : missed) shoot(d);
     double result = best;
     for (const Hit& hit : hits)
       if (hit.distance <= 1.5 * best) result = std::min(result, slide(hit.direction, hit.distance));
@@ -65,9 +72,14 @@ class FootSearch {
 
   /// Distance along a ray to the surface; inf when it is farther than `limit` or never met. Steps as
   /// long as the bound allows, yet not so short that touching parts stop the ray at their seam.
-  double march(const Vec3& direction, double limit) const {
-    double before = 0.0, t = reach_;
-    for (int k = 0; k < 80 && t <= limit; ++k) {
+  double march(const Vec3& direction, double limit, double start) const {
+    double before = 0.0, t = start;
+    const double least = limit < inf ? 0.01 * limit : 1e-12;
+    for (int k = 0; k < 100; ++k) {
+      if (t > limit) {
+        if (before >= limit) break;
+        t = limit;
+      }
       const double v = g(p_ + t * direction);
       if (v > 0.0) {
         double after = t;
@@ -78,7 +90,7 @@ class FootSearch {
         return after;
       }
       before = t;
-      t += std::max(-v, 0.01 * t + 1e-12);
+      t += std::max({-v, 0.01 * t, least});
     }
     return inf;
   }
@@ -96,7 +108,10 @@ class FootSearch {
         const Vec3 to = q + share * (foot - q) - p_;
         const double length = to.norm();
         if (length < 1e-300) continue;
-        const double t = march(to / length, distance);
+        // Starting just before the foot keeps a ray along a seam from creeping.
+        const double start = 0.9 * length;
+        const bool clear = g(p_ + start * (to / length)) <= 0.0;
+        const double t = march(to / length, distance, clear ? start : reach_);
         if (t < distance * (1.0 - 1e-6)) {
           direction = to / length;
           distance = t;

@@ -81,7 +81,8 @@ class Relaxation {
              const RelaxFillOptions& options)
       : shape_(shape), dp_(dp), dim_(dim), options_(options), kernel_(options.h_factor * dp, dim),
         r_(std::move(start)), box_(around(r_, dp)), mesh_(shape, box_, 0.5 * dp, kernel_, dim),
-        grid_(box_, kernel_.support(), dim), depth_(r_.size(), 0.0) {
+        grid_(box_, kernel_.support(), dim), depth_(r_.size(), 0.0),
+        moved_(r_.size(), 0.0) {
     volume_ = mesh_.volume() / static_cast<double>(r_.size());
     moves_.move.resize(r_.size());
     moves_.density.resize(r_.size());
@@ -89,25 +90,24 @@ class Relaxation {
 
   RelaxFillResult run() {
     RelaxFillResult result;
-    const Index n = static_cast<Index>(r_.size());
-    bound();
+    parallel_for(static_cast<Index>(r_.size()), [&](Index i) { bound(i); });
     for (int step = 0; step < options_.steps && !result.converged; ++step) {
       sum_forces();
-      const std::vector<Vec3> before = r_;
-      parallel_for(n, [&](Index i) { at(r_, i) += at(moves_.move, i); });
-      parallel_for(n, [&](Index i) { at(depth_, i) += at(moves_.move, i).norm(); });
-      bound();
-      const double mean =
-          ordered_sum(n, [&](Index i) { return (at(r_, i) - at(before, i)).norm(); }) /
-          static_cast<double>(n) / dp_;
-      const double most = block_max(n, [&](Index i) { return (at(r_, i) - at(before, i)).norm(); }) / dp_;
+      move();
+      double sum = 0.0, most = 0.0;
+      for (const double m : moved_) {
+        sum += m;
+        most = std::max(most, m);
+      }
+      const double mean = sum / static_cast<double>(r_.size());
       result.history.push_back({mean, most, spread()});
       result.converged = mean < options_.tolerance;
     }
     sum_forces();
     result.density_spread = spread();
-    result.density_low = block_min(n, [&](Index i) { return at(moves_.density, i); });
-    result.density_high = block_max(n, [&](Index i) { return at(moves_.density, i); });
+    const auto [low, high] = std::minmax_element(moves_.density.begin(), moves_.density.end());
+    result.density_low = *low;
+    result.density_high = *high;
     result.surface_offset = surface_offset();
     result.particle_volume = volume_;
     result.positions = std::move(r_);
@@ -149,48 +149,48 @@ class Relaxation {
     });
   }
 
-  /// Surface bounding, Eq. (86). depth_ is an upper limit of the signed distance: it grows with the
-  /// way travelled, and only particles that may have come near the surface ask the shape again.
-  void bound() {
+  /// One step of Eqs. (85) and (86), and the way of each particle as a share of dp.
+  void move() {
     parallel_for(static_cast<Index>(r_.size()), [&](Index i) {
-      if (at(depth_, i) < -0.5 * dp_) return;
-      Vec3& p = at(r_, i);
-      double d = shape_.signed_distance(p);
-      for (int k = 0; k < 3 && d > -0.5 * dp_ * (1.0 + 1e-6); ++k) {
-        p -= (d + 0.5 * dp_) * outward_normal(shape_, p, 0.05 * dp_, dim_);
-        d = shape_.signed_distance(p);
-      }
-      at(depth_, i) = d;
+      const Vec3 before = at(r_, i);
+      at(r_, i) += at(moves_.move, i);
+      at(depth_, i) += at(moves_.move, i).norm();
+      bound(i);
+      at(moved_, i) = (at(r_, i) - before).norm() / dp_;
     });
   }
 
+  /// Surface bounding, Eq. (86). depth_ is an upper limit of the signed distance: it grows with the
+  /// way travelled, and only particles that may have come near the surface ask the shape again.
+  void bound(Index i) {
+    if (at(depth_, i) < -0.5 * dp_) return;
+    Vec3& p = at(r_, i);
+    double d = shape_.signed_distance(p);
+    for (int k = 0; k < 3 && d > -0.5 * dp_ * (1.0 + 1e-6); ++k) {
+      p -= (d + 0.5 * dp_) * outward_normal(shape_, p, 0.05 * dp_, dim_);
+      d = shape_.signed_distance(p);
+    }
+    at(depth_, i) = d;
+  }
+
   double spread() const {
-    const Index n = static_cast<Index>(r_.size());
-    const double mean = ordered_sum(n, [&](Index i) { return at(moves_.density, i); }) / static_cast<double>(n);
-    const double square = ordered_sum(n, [&](Index i) {
-      const double d = at(moves_.density, i) - mean;
-      return d * d;
-    });
-    return std::sqrt(square / static_cast<double>(n)) / mean;
+    double sum = 0.0, square = 0.0;
+    for (const double d : moves_.density) sum += d;
+    const double n = static_cast<double>(r_.size()), mean = sum / n;
+    for (const double d : moves_.density) square += (d - mean) * (d - mean);
+    return std::sqrt(square / n) / mean;
   }
 
   /// The outermost particles are those nearer to the surface than the gap between the first two layers.
   double surface_offset() const {
-    struct Sum {
-      double square = 0.0, count = 0.0;
-      Sum& operator+=(const Sum& o) {
-        square += o.square;
-        count += o.count;
-        return *this;
-      }
-    };
-    const Sum s = ordered_sum(static_cast<Index>(r_.size()), [&](Index i) {
-      const double d = shape_.signed_distance(at(r_, i));
-      if (d < -0.9 * dp_) return Sum{};
-      const double off = -d / dp_ - 0.5;
-      return Sum{off * off, 1.0};
-    });
-    return s.count > 0.0 ? std::sqrt(s.square / s.count) : 0.0;
+    double square = 0.0, count = 0.0;
+    for (const Vec3& p : r_) {
+      const double d = shape_.signed_distance(p);
+      if (d < -0.9 * dp_) continue;
+      square += (d / dp_ + 0.5) * (d / dp_ + 0.5);
+      count += 1.0;
+    }
+    return count > 0.0 ? std::sqrt(square / count) : 0.0;
   }
 
   const Shape& shape_;
@@ -202,7 +202,8 @@ class Relaxation {
   Aabb box_;
   LevelSetMesh mesh_;
   CellGrid grid_;
-  std::vector<double> depth_;
+  std::vector<double> depth_;  // upper limit of the signed distance
+  std::vector<double> moved_;
   double volume_ = 0.0;
   Moves moves_;
 };

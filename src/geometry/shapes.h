@@ -182,6 +182,10 @@ struct BoundedShape : SceneShape {
 /// The bound of a BoundedShape, the distance of any other: enough to ask "inside or outside".
 double distance_bound(const Shape& shape, const Vec3& at);
 
+/// For a point whose bound is zero but for round-off: whether it lies on a seam within the solid (where
+/// parts that touch hide each other's surface) rather than on the surface. Looks `reach` (m) around.
+bool on_inner_seam(const Shape& shape, const Vec3& at, double reach, bool flat);
+
 /// All points of any part. The distance is exact outside; inside it is searched (see refine.h).
 struct Union final : BoundedShape {
   std::vector<ShapePtr> of;

@@ -74,6 +74,9 @@ class Words {
     while (at_ < text_.size() && !is_space(text_[at_])) ++at_;
     return text_.substr(first, at_ - first);
   }
+  void skip_line() {
+    while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+  }
   double number() {
     std::string_view word = next();
     if (word.starts_with('+')) word.remove_prefix(1);
@@ -96,14 +99,16 @@ class Words {
   int line_ = 1;
 };
 
-/// Only `vertex` and `endfacet` matter; names after `solid` may hold any words but these.
+/// Only `vertex` and `endfacet` matter; the name after `solid` may hold any words.
 Triangles read_text(const std::string& text, const std::string& path) {
   Triangles mesh;
   Words words(text, path);
   std::array<Vec3, 3> corners;
   int have = 0;
   for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
-    if (word == "vertex") {
+    if (word == "solid" || word == "endsolid") {
+      words.skip_line();
+    } else if (word == "vertex") {
       if (have == 3) words.fail("a face with more than three corners");
       Vec3& c = corners[static_cast<std::size_t>(have++)];
       for (int k = 0; k < 3; ++k) c[k] = words.number();
