@@ -21,6 +21,7 @@
 #include <bit>
 #include <type_traits>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "sph/neighbor_list.h"
 #include "sph/records.h"
@@ -107,12 +108,17 @@ void gather_block(const NeighborList::Block& block, const RecordView<Dim, T, N>&
 /// Calls finish(i, sums) for every walked target i of the list, with sums (in double) of
 /// pair(sums, i, j, r, r2) over its neighbors. `targets` and `sources` are Records, or two of them
 /// joined by with(); both sides have the frame of the list's grid. Sums are taken in the precision
-/// of the records. finish runs in parallel and may write what belongs to i only.
+/// of the records. finish runs in parallel and may write what belongs to i only. Throws Error
+/// (internal) if the records are not those of the list's sets.
 template <template <class> class Sums, class Targets, class Sources, class Pair, class Finish>
 void gather(const NeighborList& list, const Targets& target_records, const Sources& source_records,
             const Pair& pair_function, const Finish& finish) {
   const auto targets = view(target_records);
   const auto sources = view(source_records);
+  // The null record of the list must be that of the sources.
+  if (targets.size() != list.target_count() || sources.size() != list.source_count() ||
+      !(targets.frame() == sources.frame()))
+    throw Error(ExitCode::internal, "a pass over pairs met records of another set");
   const auto blocks = list.blocks();
   parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
     gather_block<Sums>(blocks[static_cast<std::size_t>(b)], targets, sources, pair_function,

@@ -230,6 +230,15 @@ TEST_SUITE("sph") {
     set_threads(before);
   }
 
+  TEST_CASE("records of another set are refused") {
+    const Scene<2> scene;
+    const auto water = scene.records<float>(scene.water, 1);
+    const auto wall = scene.records<float>(scene.wall, 2);
+    const Mixed<2> pair{Kernel<2>(scene.h)};
+    CHECK_THROWS_AS(
+        gather<Mixed<2>::Sums>(scene.within, water, wall, pair, [](Index, const auto&) {}), Error);
+  }
+
   TEST_CASE("finish runs for lonely targets of a set, not for those of a cross list") {
     const Scene<2> scene;
     std::vector<int> within(scene.water.size(), 0), across(scene.water.size(), 0);
