@@ -36,6 +36,7 @@ struct DeckReading {
   std::string main_file;    ///< name of the main deck in findings
   std::string folder;       ///< of the main deck; paths given by --set count from it too
   std::vector<std::function<void()>> rules;
+  bool variables_unreadable = false;     ///< the section as a whole: unknown names follow from it
   std::set<std::string> reported_names;  ///< unknown variables already reported
 
   /// The folder that relative paths in this file (or override) count from.

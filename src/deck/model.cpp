@@ -146,6 +146,7 @@ Schema<Expect> Expect::schema() {
       c.error(curve ? "reduce" : "reference_csv",
               curve ? "reduce: curve needs a 'reference_csv'"
                     : "'reference_csv' is used only with reduce: curve");
+      return;
     }
     if (e.reduce == "at" && !e.at) c.error("reduce", "reduce: at needs the time 'at'");
     if (e.reduce != "at" && e.at) c.error("at", "'at' has no meaning unless reduce is at");

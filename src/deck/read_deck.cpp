@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "deck/deck_file.h"
 #include "deck/model.h"
 #include "deck/scalar_reading.h"
@@ -37,6 +38,16 @@ double number_ahead(const Node& root, const std::string& name, const DeckReading
   return 0.0;
 }
 
+/// The section `variables`, also when its name is misspelt: that is one error, and the formulas
+/// that use its names are none.
+const Entry* find_variables(const Node& root) {
+  if (const Entry* entry = root.find("variables")) return entry;
+  for (const Entry& entry : root.entries) {
+    if (!nearest_name(entry.key, {"variables"}).empty()) return &entry;
+  }
+  return nullptr;
+}
+
 /// Whether parts of the deck are missing, so that further errors would only follow from these.
 bool leaves_holes(const Diagnostics& found) {
   return std::any_of(found.items().begin(), found.items().end(), [](const Diagnostic& d) {
@@ -55,7 +66,7 @@ Model read(const DeckText& deck, const std::vector<std::string>& overrides) {
   reading.main_file = deck.name;
   reading.folder = deck.folder;
   model.places[""] = root->place;
-  if (const Entry* variables = root->find("variables")) read_variables(variables->value, reading);
+  if (const Entry* variables = find_variables(*root)) read_variables(variables->value, reading);
   const double dimension = number_ahead(*root, "dimension", reading);
   if (dimension == 2.0 || dimension == 3.0) reading.dimension = static_cast<int>(dimension);
   reading.resolution = number_ahead(*root, "resolution", reading);

@@ -70,8 +70,10 @@ bool is_no_formula(const Node& node, const FormulaError& e, const DeckReading& r
            c == '\'' || c == '.' || c == ',' || c == '-' || c == '/';
   };
   if (!e.unknown_name.empty()) {
-    return is_one_name(node.text) && e.help.find("did you mean") == std::string::npos &&
-           reading.variables.find(node.text) == nullptr && node.text.size() > 1;
+    std::vector<std::string> names;
+    for (const auto& v : reading.variables.values) names.push_back(v.first);
+    return is_one_name(node.text) && node.text.size() > 1 &&
+           reading.variables.find(node.text) == nullptr && nearest_name(node.text, names).empty();
   }
   return std::all_of(node.text.begin(), node.text.end(), plain);
 }
@@ -112,6 +114,7 @@ bool formula_failed(const FormulaError& e, const Node& node, const std::string& 
     // A variable that failed, or is unknown, is one mistake however often it is used.
     const double* value = reading.variables.find(e.unknown_name);
     if (value != nullptr && std::isnan(*value)) return false;
+    if (value == nullptr && reading.variables_unreadable) return false;
     const bool coordinate = e.unknown_name.size() == 1 && value == nullptr &&
                             std::string("xyzt").find(e.unknown_name) != std::string::npos;
     if (!coordinate && !reading.reported_names.insert(e.unknown_name).second) return false;
@@ -200,6 +203,7 @@ bool read_formula(const Node& node, const Key& key, const std::string& path, Dec
 void read_variables(const Node& node, DeckReading& reading) {
   if (node.kind != Node::Kind::map) {
     wrong_kind(node, "a mapping of names to numbers", "variables", reading);
+    reading.variables_unreadable = true;
     return;
   }
   for (const Entry& entry : node.entries) {

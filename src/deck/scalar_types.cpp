@@ -17,8 +17,10 @@ namespace {
 
 void json_range(Json& out, const Range& r) {
   // Parsing the exact text keeps whole numbers whole: 2, not 2.0.
-  if (std::isfinite(r.low)) out[r.low_open ? "exclusiveMinimum" : "minimum"] = Json::parse(exact(r.low));
-  if (std::isfinite(r.high)) out[r.high_open ? "exclusiveMaximum" : "maximum"] = Json::parse(exact(r.high));
+  if (std::isfinite(r.low))
+    out[r.low_open ? "exclusiveMinimum" : "minimum"] = Json::parse(exact(r.low));
+  if (std::isfinite(r.high))
+    out[r.high_open ? "exclusiveMaximum" : "maximum"] = Json::parse(exact(r.high));
 }
 
 /// A number, or a text that holds a unit or a formula; the range binds plain numbers only.

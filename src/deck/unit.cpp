@@ -213,10 +213,10 @@ NumberText parse_number(std::string_view raw) {
 
 QuantityText split_quantity(std::string_view raw) {
   const std::string_view text = trimmed(raw);
-  std::size_t cut = number_length(text);
-  // "010 m" must be refused as a number too, so take all digits that stand together.
-  while (cut > 0 && cut < text.size() && is_digit(text[cut])) ++cut;
-  if (cut == 0) return {parse_number(text), {}};
+  const std::size_t cut = number_length(text);
+  // What is refused as a number is so with a unit, too: "010 m", "1:30".
+  const NumberText whole = parse_number(text);
+  if (cut == 0 || whole.status == NumberText::Status::refused) return {whole, {}};
   const std::string_view rest = trimmed(text.substr(cut));
   if (rest.empty() || cut == text.size()) return {parse_number(text), {}};
   const bool spaced = text[cut] == ' ' || text[cut] == '\t';

@@ -10,8 +10,8 @@ TEST_SUITE("core") {
   TEST_CASE("a finding shows place, id, line, caret and help") {
     Diagnostics found;
     found.keep_source("deck.yaml", "materials:\n  - porositty: 0.4\n");
-    found.error("E012", {"deck.yaml", 2, 5}, "materials[0]", "unknown key 'porositty' in materials[0]",
-                "did you mean 'porosity'?");
+    found.error("E012", {"deck.yaml", 2, 5}, "materials[0]",
+                "unknown key 'porositty' in materials[0]", "did you mean 'porosity'?");
     CHECK(found.render() ==
           "deck.yaml:2:5: error[E012]: unknown key 'porositty' in materials[0]\n"
           "    2 |   - porositty: 0.4\n"

@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 /// A folder that is removed at the end of the test.
 class Folder {
  public:
-  explicit Folder(const std::string& name) : path_(fs::temp_directory_path() / ("sphgeo deck " + name)) {
+  explicit Folder(const std::string& name)
+      : path_(fs::temp_directory_path() / ("sphgeo deck " + name)) {
     fs::remove_all(path_);
     fs::create_directories(path_);
   }
@@ -33,7 +34,8 @@ class Folder {
   fs::path path_;
 };
 
-std::vector<Diagnostic> errors_of(const std::string& path, const std::vector<std::string>& sets = {}) {
+std::vector<Diagnostic> errors_of(const std::string& path,
+                                  const std::vector<std::string>& sets = {}) {
   try {
     read_deck(path, sets);
     return {};
@@ -127,10 +129,10 @@ TEST_SUITE("deck") {
   }
 
   TEST_CASE("overrides reach variables, sections, elements by number and by name") {
-    const Model m = read_deck_text(
-        good_deck(), {"H=0.3", "resolution=2 cm", "bodies[0].shape.max[0]=0.7",
-                      "bodies.column.shape.rounding=0.05", "numerics.outside=stop",
-                      "bodies.column.velocity=[1, 2, x]", "output.run_every = 0.5 "});
+    const Model m = read_deck_text(good_deck(),
+                                   {"H=0.3", "resolution=2 cm", "bodies[0].shape.max[0]=0.7",
+                                    "bodies.column.shape.rounding=0.05", "numerics.outside=stop",
+                                    "bodies.column.velocity=[1, 2, x]", "output.run_every = 0.5 "});
     CHECK(*m.variables.find("H") == 0.3);
     CHECK(m.resolution == 0.02);
     const auto* block = dynamic_cast<const Block*>(m.bodies[0].shape.get());
@@ -153,7 +155,8 @@ TEST_SUITE("deck") {
     CHECK(only({"title[0]=1"}).id == "E008");
     CHECK(only({"title.a=1"}).id == "E008");
     CHECK(only({"include=[a.yaml]"}).id == "E008");
-    for (const char* bad : {"nothing", "=3", "a..b=1", "a[x]=1", "a[1=1", "[0]=1", "a b=1", "a.=1"}) {
+    for (const char* bad :
+         {"nothing", "=3", "a..b=1", "a[x]=1", "a[1=1", "[0]=1", "a b=1", "a.=1"}) {
       CAPTURE(bad);
       CHECK(only({bad}).id == "E008");
     }

@@ -80,8 +80,8 @@ TEST_SUITE("deck") {
     CHECK(error_at("1)") == 1);
     CHECK(error_at("x $ 2") == 2);
     CHECK(error_at("\"a\"") == 0);
-    for (const char* bad : {"sqrt(-1)", "1/0", "sqrt(1, 2)", "min()", "1 +", "*2", "x y", "L(2)", "sin",
-                            "()", "1:2", "1e999", "_pi", "rnd()"}) {
+    for (const char* bad : {"sqrt(-1)", "1/0", "sqrt(1, 2)", "min()", "1 +", "*2", "x y", "L(2)",
+                            "sin", "()", "1:2", "1e999", "_pi", "rnd()"}) {
       CAPTURE(bad);
       CHECK(error_at(bad) >= 0);
     }

@@ -11,11 +11,14 @@ Schema<Block> Block::schema() {
   s.required("max", &Block::max, unit::length, "upper corner").at_most(100);
   s.optional("axis", &Block::axis, unit::none, "axis of rotation").keep_y();
   s.optional("rounding", &Block::rounding, unit::length, "radius of the edges").above(0).below(0.1);
-  s.optional("side", &Block::side, unit::none, "which side is solid").choices({"inside", "outside"});
+  s.optional("side", &Block::side, unit::none, "which side is solid")
+      .choices({"inside", "outside"});
   s.optional("open", &Block::open, unit::none, "whether the top is open");
   s.optional("layers", &Block::layers, unit::none, "layers").at_least(1);
   s.optional("stops", &Block::stops, unit::time, "two times").items(2, 3).at_least(0);
-  s.optional("roughness", &Block::roughness, unit::length, "height of bumps").only_of("xyz").at_least(0);
+  s.optional("roughness", &Block::roughness, unit::length, "height of bumps")
+      .only_of("xyz")
+      .at_least(0);
   s.check([](Block& b, CheckContext& c) {
     b.flat = c.dimension() == 2;
     if (!(b.min.z() < b.max.z())) c.error("max", "the block has no height", "raise max");
@@ -32,7 +35,9 @@ Schema<Group> Group::schema() {
 
 Schema<Liquid> Liquid::schema() {
   Schema<Liquid> s("sample_liquid", "A liquid.");
-  s.optional("density", &Liquid::density, unit::density, "density at rest").above(0).equation("Eq. 26");
+  s.optional("density", &Liquid::density, unit::density, "density at rest")
+      .above(0)
+      .equation("Eq. 26");
   s.optional("viscosity", &Liquid::viscosity, unit::viscosity, "dynamic viscosity").at_least(0);
   s.optional("friction_angle", &Liquid::friction_angle, unit::angle, "angle");
   s.optional("sound_speed", &Liquid::sound_speed, unit::speed, "speed of sound").above(0);
@@ -96,7 +101,8 @@ std::string with(const std::string& from, const std::string& to) {
   return text.replace(at, from.size(), to);
 }
 
-std::vector<Diagnostic> findings(const std::string& text, const std::vector<std::string>& overrides) {
+std::vector<Diagnostic> findings(const std::string& text,
+                                 const std::vector<std::string>& overrides) {
   try {
     read_deck_text(text, overrides, "a.yaml");
     return {};

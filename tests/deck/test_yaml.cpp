@@ -91,13 +91,17 @@ TEST_SUITE("deck") {
     CHECK(tree("").kind == Node::Kind::null);
     CHECK(tree("# only a comment\n").kind == Node::Kind::null);
     CHECK(tree("%YAML 1.2\n---\na: 1\n...\n").entries.size() == 1);
-    CHECK(tree("\xEF\xBB\xBF" "a: 1\r\n").find("a")->value.text == "1");
+    CHECK(tree("\xEF\xBB\xBF"
+               "a: 1\r\n")
+              .find("a")
+              ->value.text == "1");
   }
 
   TEST_CASE("what the writer writes, the reader reads back") {
     Node root = Node::map();
-    for (const char* text : {"plain", "two words", "", "a: b", "#x", "- x", "it's \"q\" \\ \n\t", "-1",
-                             "*x", "{", "true", "x-", "0.5*t^2", "(1)", "/a/b c.csv", "%", "\xC3\xA4"}) {
+    for (const char* text :
+         {"plain", "two words", "", "a: b", "#x", "- x", "it's \"q\" \\ \n\t", "-1", "*x", "{",
+          "true", "x-", "0.5*t^2", "(1)", "/a/b c.csv", "%", "\xC3\xA4"}) {
       root.add("k" + std::to_string(root.entries.size()), Node::scalar(text));
     }
     root.add("empty_list", Node::list());
