@@ -10,7 +10,8 @@ BoxTree::BoxTree(const std::vector<Aabb>& pieces) {
   build(pieces, 0, static_cast<std::int32_t>(pieces.size()));
 }
 
-std::int32_t BoxTree::build(const std::vector<Aabb>& pieces, std::int32_t first, std::int32_t count) {
+std::int32_t BoxTree::build(const std::vector<Aabb>& pieces, std::int32_t first,
+                            std::int32_t count) {
   constexpr std::int32_t leaf_size = 4;
   Node node;
   Aabb centres;

@@ -15,9 +15,9 @@ class BoxTree {
  public:
   struct Node {
     Aabb box;
-    std::int32_t first = 0;   ///< leaf: first entry of order(); inner node: left child
-    std::int32_t count = 0;   ///< leaf: number of pieces; 0 for an inner node
-    std::int32_t right = 0;   ///< inner node: right child
+    std::int32_t first = 0;  ///< leaf: first entry of order(); inner node: left child
+    std::int32_t count = 0;  ///< leaf: number of pieces; 0 for an inner node
+    std::int32_t right = 0;  ///< inner node: right child
   };
 
   BoxTree() = default;

@@ -11,7 +11,8 @@ Schema<Capsule> Capsule::schema() {
   Schema<Capsule> s("capsule", "A cylinder with round ends: all points near a segment.");
   s.required("from", &Capsule::from, unit::length, "One end of the segment.");
   s.required("to", &Capsule::to, unit::length, "The other end of the segment.");
-  s.required("radius", &Capsule::radius, unit::length, "Greatest distance from the segment.").above(0);
+  s.required("radius", &Capsule::radius, unit::length, "Greatest distance from the segment.")
+      .above(0);
   s.check([](Capsule& b, CheckContext& c) { set_scene(b, c); });
   return s;
 }

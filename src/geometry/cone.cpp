@@ -12,7 +12,8 @@ Schema<Cone> Cone::schema() {
   s.required("from", &Cone::from, unit::length, "The middle of the base.");
   s.required("to", &Cone::to, unit::length, "The tip, or the middle of the other end.");
   s.required("radius_from", &Cone::radius_from, unit::length, "Radius at `from`.").at_least(0);
-  s.optional("radius_to", &Cone::radius_to, unit::length, "Radius at `to`; 0 is a tip.").at_least(0);
+  s.optional("radius_to", &Cone::radius_to, unit::length, "Radius at `to`; 0 is a tip.")
+      .at_least(0);
   s.check([](Cone& b, CheckContext& c) {
     set_scene(b, c);
     if (b.from == b.to)

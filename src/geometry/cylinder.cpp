@@ -8,9 +8,10 @@ const Register<Shape, Cylinder> registered{"cylinder"};
 }
 
 Schema<Cylinder> Cylinder::schema() {
-  Schema<Cylinder> s("cylinder",
-                     "A round cylinder with flat ends. In 2D a disc when its axis is along y (the ends "
-                     "then coincide in the plane), else a rectangle.");
+  Schema<Cylinder> s(
+      "cylinder",
+      "A round cylinder with flat ends. In 2D a disc when its axis is along y (the ends "
+      "then coincide in the plane), else a rectangle.");
   s.required("from", &Cylinder::from, unit::length, "The middle of one end.");
   s.required("to", &Cylinder::to, unit::length, "The middle of the other end.");
   s.required("radius", &Cylinder::radius, unit::length, "The radius.").above(0);

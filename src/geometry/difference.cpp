@@ -9,7 +9,8 @@ const Register<Shape, Difference> registered{"difference"};
 
 Schema<Difference> Difference::schema() {
   Schema<Difference> s("difference", "The first shape without all the others.");
-  s.required("of", &Difference::of, unit::none, "The shape to keep, then those to take away.").items(2);
+  s.required("of", &Difference::of, unit::none, "The shape to keep, then those to take away.")
+      .items(2);
   s.check([](Difference& d, CheckContext& c) { set_scene(d, c); });
   return s;
 }

@@ -17,8 +17,9 @@ double box_distance(const Vec3& p, const Vec3& lo, const Vec3& hi, bool flat) {
 namespace {
 
 /// The closest point of an ellipsoid solves g(u) = sum (r_i z_i / (u + r_i - 1))^2 - 1 = 0, where
-/// z = p / e and r = (e / e_min)^2. g falls on u > 0 from +inf, so a safeguarded Newton iteration cannot
-/// fail. Working with u instead of u - 1 keeps its relative accuracy near the medial plane, where u -> 0.
+/// z = p / e and r = (e / e_min)^2. g falls on u > 0 from +inf, so a safeguarded Newton iteration
+/// cannot fail. Working with u instead of u - 1 keeps its relative accuracy near the medial plane,
+/// where u -> 0.
 template <int N>
 double ellipsoid_root_distance(const Eigen::Matrix<double, N, 1>& p,
                                const Eigen::Matrix<double, N, 1>& e) {
@@ -99,7 +100,8 @@ double polygon_distance(const Vec2& p, const std::vector<Vec2>& corners) {
   return polygon_distance(p, corners.data(), corners.size());
 }
 
-double frustum_distance(const Vec3& p, const Vec3& from, const Vec3& to, double r_from, double r_to) {
+double frustum_distance(const Vec3& p, const Vec3& from, const Vec3& to, double r_from,
+                        double r_to) {
   const Vec3 axis = to - from;
   const double length = axis.norm();
   const double t = (p - from).dot(axis) / length;

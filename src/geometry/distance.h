@@ -25,9 +25,10 @@ double segment_distance(const Vec3& p, const Vec3& a, const Vec3& b);
 /// Exact distance to a simple polygon given by its corners in either sense.
 double polygon_distance(const Vec2& p, const std::vector<Vec2>& corners);
 
-/// Exact distance to a frustum between `from` (radius `r_from`) and `to` (radius `r_to`), flat ends.
-/// In the plane y = 0 it is its own lengthwise section.
-double frustum_distance(const Vec3& p, const Vec3& from, const Vec3& to, double r_from, double r_to);
+/// Exact distance to a frustum between `from` (radius `r_from`) and `to` (radius `r_to`), flat
+/// ends. In the plane y = 0 it is its own lengthwise section.
+double frustum_distance(const Vec3& p, const Vec3& from, const Vec3& to, double r_from,
+                        double r_to);
 
 /// Distance to the prism whose section has the distance `section` and whose ends are at `along`
 /// (signed distance to the slab between the ends). Exact when `section` is.

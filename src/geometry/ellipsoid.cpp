@@ -8,9 +8,10 @@ const Register<Shape, Ellipsoid> registered{"ellipsoid"};
 }
 
 Schema<Ellipsoid> Ellipsoid::schema() {
-  Schema<Ellipsoid> s("ellipsoid",
-                      "An ellipsoid with its axes along x, y and z; an ellipse in 2D. A `transform` "
-                      "turns it.");
+  Schema<Ellipsoid> s(
+      "ellipsoid",
+      "An ellipsoid with its axes along x, y and z; an ellipse in 2D. A `transform` "
+      "turns it.");
   s.required("center", &Ellipsoid::center, unit::length, "The middle.");
   s.required("semi_axes", &Ellipsoid::semi_axes, unit::length, "Half the width along each axis.");
   s.check([](Ellipsoid& e, CheckContext& c) {

@@ -32,14 +32,15 @@ void refuse_unbounded(const Aabb& box) {
                 "the shape is unbounded and cannot be filled: intersect it with a box");
 }
 
-/// Answers for a lattice point: accept it or not, and how far (m) the answer surely holds around it.
+/// Answers for a lattice point: accept it or not, and how far (m) the answer surely holds around
+/// it.
 struct Verdict {
   bool accept;
   double holds;
 };
 
-/// Range of cells k whose centres origin + (k + 1/2) dp lie in [lo, hi]; round-off of a millionth of
-/// a cell neither gains nor loses one.
+/// Range of cells k whose centres origin + (k + 1/2) dp lie in [lo, hi]; round-off of a millionth
+/// of a cell neither gains nor loses one.
 struct Range {
   Index first = 0, last = -1;
   Index size() const { return std::max<Index>(last - first + 1, 0); }
@@ -65,7 +66,9 @@ std::vector<Vec3> collect(const Aabb& box, const Vec3& origin, double dp, int di
     for (Index row = begin; row < end; ++row) {
       const auto centre = [&](Index k) {
         return Vec3(origin.x() + (static_cast<double>(k) + 0.5) * dp,
-                    dim == 3 ? origin.y() + (static_cast<double>(y.first + row % y.size()) + 0.5) * dp : 0.0,
+                    dim == 3
+                        ? origin.y() + (static_cast<double>(y.first + row % y.size()) + 0.5) * dp
+                        : 0.0,
                     origin.z() + (static_cast<double>(z.first + row / y.size()) + 0.5) * dp);
       };
       for (Index k = x.first; k <= x.last;) {
@@ -92,8 +95,9 @@ std::vector<Vec3> collect(const Aabb& box, const Vec3& origin, double dp, int di
 
 void refuse_absurd(double expected) {
   if (expected > largest_fill)
-    throw Error(ExitCode::usage, "the shape would take about " + std::to_string(expected) +
-                                     " particles: is the resolution or a length in the wrong unit?");
+    throw Error(ExitCode::usage,
+                "the shape would take about " + std::to_string(expected) +
+                    " particles: is the resolution or a length in the wrong unit?");
 }
 
 double volume(const Aabb& box, int dim) {
@@ -116,14 +120,16 @@ double estimate_fill(const Shape& shape, double dp, int dim, const Aabb& clip) {
   if (!box.lo.allFinite() || !box.hi.allFinite()) return std::numeric_limits<double>::infinity();
   const int n = dim == 3 ? 16 : 64;
   const Vec3 cell = (box.hi - box.lo) / n;
-  // A cell counts by how deep its centre lies, so that thin bodies between the centres are seen too.
+  // A cell counts by how deep its centre lies, so that thin bodies between the centres are seen
+  // too.
   const double reach = 0.5 * (dim == 3 ? std::cbrt(cell.prod()) : std::sqrt(cell.x() * cell.z()));
   const Index rows = dim == 3 ? n * n : n;
   const double filled = ordered_sum(rows, [&](Index row) {
     double sum = 0.0;
     for (int i = 0; i < n; ++i) {
-      const Vec3 p = box.lo + cell.cwiseProduct(Vec3(i + 0.5, dim == 3 ? static_cast<double>(row % n) + 0.5 : 0.0,
-                                                     static_cast<double>(dim == 3 ? row / n : row) + 0.5));
+      const Vec3 p = box.lo + cell.cwiseProduct(
+                                  Vec3(i + 0.5, dim == 3 ? static_cast<double>(row % n) + 0.5 : 0.0,
+                                       static_cast<double>(dim == 3 ? row / n : row) + 0.5));
       const double d = distance_bound(shape, p);
       sum += reach > 0.0 ? std::clamp(0.5 - 0.5 * d / reach, 0.0, 1.0) : (d < 0.0 ? 1.0 : 0.0);
     }
@@ -166,7 +172,8 @@ std::vector<Vec3> fill_layers(const Shape& shape, double dp, int dim, double thi
       if (dim == 2) out.y() = 0.0;
       d = -out.maxCoeff();
     } else if (dynamic_cast<const BoundedShape*>(&shape)) {
-      // The bound settles the far points cheaply; near the layer the true distance is worth its price.
+      // The bound settles the far points cheaply; near the layer the true distance is worth its
+      // price.
       if (-d >= thickness - slack) return Verdict{false, -d - thickness};
       d = outside ? -shape.signed_distance(p) : shape.signed_distance(p);
     }

@@ -8,26 +8,27 @@
 
 namespace sphgeo {
 
-/// More particles than this in one body are taken for a mistake (a millimetre where metres were meant).
+/// More particles than this in one body are taken for a mistake (a millimetre where metres were
+/// meant).
 inline constexpr double largest_fill = 4e9;
 
-/// Expected number of lattice points: the volume (area in 2D) of the shape within `clip`, estimated on
-/// a coarse grid, over dp^dim. Infinite when neither bounds the shape.
+/// Expected number of lattice points: the volume (area in 2D) of the shape within `clip`, estimated
+/// on a coarse grid, over dp^dim. Infinite when neither bounds the shape.
 double estimate_fill(const Shape& shape, double dp, int dim, const Aabb& clip);
 
 /// The cell centres origin + (k + 1/2) dp inside the shape and inside `clip`, x fastest, z slowest;
 /// y = 0 in 2D. The default origin is the lower corner of the shape's box (of `clip` where that is
-/// unbounded), so that a box of whole multiples of dp is filled exactly. A point counts as inside when
-/// its signed distance is below -1e-9 dp. Throws Error (usage) when the shape is unbounded within
-/// `clip` or would take more than `largest_fill` points.
+/// unbounded), so that a box of whole multiples of dp is filled exactly. A point counts as inside
+/// when its signed distance is below -1e-9 dp. Throws Error (usage) when the shape is unbounded
+/// within `clip` or would take more than `largest_fill` points.
 std::vector<Vec3> fill_lattice(const Shape& shape, double dp, int dim, const Aabb& clip = {},
                                std::optional<Vec3> origin = std::nullopt);
 
 enum class LayerSide { inside, outside };
 
-/// Boundary layers: lattice points nearer than `thickness` (m) to the surface, inside or outside the
-/// solid. The lattice starts at the lower corner of the shape's box, so the layers of a box are aligned
-/// with its faces and its outer corners are filled. Throws as fill_lattice.
+/// Boundary layers: lattice points nearer than `thickness` (m) to the surface, inside or outside
+/// the solid. The lattice starts at the lower corner of the shape's box, so the layers of a box are
+/// aligned with its faces and its outer corners are filled. Throws as fill_lattice.
 std::vector<Vec3> fill_layers(const Shape& shape, double dp, int dim, double thickness,
                               LayerSide side, const Aabb& clip = {});
 

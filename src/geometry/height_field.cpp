@@ -13,26 +13,32 @@ const Register<Shape, HeightField> registered{"height_field"};
 }
 
 Schema<HeightField> HeightField::schema() {
-  Schema<HeightField> s("height_field",
-                        "Terrain: solid below a bilinear surface through a grid of heights, with upright "
-                        "sides at the edge of the grid.");
-  s.optional("file", &HeightField::file, unit::none,
-             "CSV of numbers only: each row runs along x, row after row along y; # begins a comment.");
+  Schema<HeightField> s(
+      "height_field",
+      "Terrain: solid below a bilinear surface through a grid of heights, with upright "
+      "sides at the edge of the grid.");
+  s.optional(
+      "file", &HeightField::file, unit::none,
+      "CSV of numbers only: each row runs along x, row after row along y; # begins a comment.");
   s.optional("heights", &HeightField::heights, unit::length,
              "The heights, row by row, instead of a file.");
   s.optional("columns", &HeightField::columns, unit::none,
              "Heights in a row of `heights`; 0: all of them are one row.")
       .at_least(0);
-  s.required("spacing", &HeightField::spacing, unit::length, "Distance of the heights along x.").above(0);
+  s.required("spacing", &HeightField::spacing, unit::length, "Distance of the heights along x.")
+      .above(0);
   s.optional("spacing_y", &HeightField::spacing_y, unit::length,
              "Distance of the rows along y; auto: as along x.")
       .above(0);
   s.optional("origin", &HeightField::origin, unit::length,
              "Place of the first height of the first row; its z is added to all heights.")
       .keep_y();
-  s.optional("scale", &HeightField::scale, unit::none, "Factor on the heights, before the origin's z.");
-  s.optional("bottom", &HeightField::bottom, unit::length, "Underside of the solid; auto: without end.");
-  s.optional("section", &HeightField::section, unit::length, "The y at which a 2D scene cuts the grid.");
+  s.optional("scale", &HeightField::scale, unit::none,
+             "Factor on the heights, before the origin's z.");
+  s.optional("bottom", &HeightField::bottom, unit::length,
+             "Underside of the solid; auto: without end.");
+  s.optional("section", &HeightField::section, unit::length,
+             "The y at which a 2D scene cuts the grid.");
   s.check([](HeightField& h, CheckContext& c) {
     set_scene(h, c);
     if (h.file.has_value() == !h.heights.empty())
@@ -45,7 +51,9 @@ Schema<HeightField> HeightField::schema() {
 
 void HeightField::prepare() {
   const std::string where = file ? file->path : "heights";
-  const auto fail = [&](const std::string& what) { throw Error(ExitCode::usage, where + ": " + what); };
+  const auto fail = [&](const std::string& what) {
+    throw Error(ExitCode::usage, where + ": " + what);
+  };
   std::size_t nx = 0, ny = 0;
   if (file) {
     const CsvTable table = read_csv_table(file->path);
@@ -74,12 +82,14 @@ void HeightField::prepare() {
   if (flat && ny_ > 1) {
     // The bilinear surface cut at constant y is a polyline over the columns.
     std::vector<double> row(nx);
-    for (int i = 0; i < nx_; ++i) row[static_cast<std::size_t>(i)] = height(origin.x() + i * spacing, section);
+    for (int i = 0; i < nx_; ++i)
+      row[static_cast<std::size_t>(i)] = height(origin.x() + i * spacing, section);
     grid_ = std::move(row);
     ny_ = 1;
   }
   const auto [low, high] = std::minmax_element(grid_.begin(), grid_.end());
-  if (bottom && *bottom >= *low) fail("`bottom` must lie below the lowest height (" + std::to_string(*low) + " m)");
+  if (bottom && *bottom >= *low)
+    fail("`bottom` must lie below the lowest height (" + std::to_string(*low) + " m)");
   lo_ = {origin.x(), ny_ > 1 ? origin.y() : 0.0, *low};
   hi_ = {origin.x() + (nx_ - 1) * spacing, ny_ > 1 ? origin.y() + (ny_ - 1) * dy_ : 0.0, *high};
   std::vector<Aabb> boxes;
@@ -88,7 +98,8 @@ void HeightField::prepare() {
       Aabb b;
       for (int k = 0; k < (ny_ > 1 ? 4 : 2); ++k) {
         const int ii = i + k % 2, jj = j + k / 2;
-        b.extend(Vec3(origin.x() + ii * spacing, ny_ > 1 ? origin.y() + jj * dy_ : 0.0, node(ii, jj)));
+        b.extend(
+            Vec3(origin.x() + ii * spacing, ny_ > 1 ? origin.y() + jj * dy_ : 0.0, node(ii, jj)));
       }
       boxes.push_back(b);
     }
@@ -96,7 +107,8 @@ void HeightField::prepare() {
 }
 
 double HeightField::node(int i, int j) const {
-  return grid_[static_cast<std::size_t>(j) * static_cast<std::size_t>(nx_) + static_cast<std::size_t>(i)];
+  return grid_[static_cast<std::size_t>(j) * static_cast<std::size_t>(nx_) +
+               static_cast<std::size_t>(i)];
 }
 
 double HeightField::height(double x, double y) const {
@@ -115,7 +127,8 @@ double HeightField::patch_distance_squared(const Vec3& p, std::int32_t cell) con
   const int i = cell % (nx_ - 1), j = cell / (nx_ - 1);
   const double x0 = origin.x() + i * spacing;
   if (ny_ == 1) {
-    const double d = segment_distance(p, {x0, 0.0, node(i, 0)}, {x0 + spacing, 0.0, node(i + 1, 0)});
+    const double d =
+        segment_distance(p, {x0, 0.0, node(i, 0)}, {x0 + spacing, 0.0, node(i + 1, 0)});
     return d * d;
   }
   const double y0 = origin.y() + j * dy_;
@@ -168,9 +181,8 @@ double HeightField::signed_distance(const Vec3& at) const {
   // Beside the sides or beneath the underside, the top plays no part.
   if (above <= 0.0 && (side > 0.0 || under > 0.0)) return extruded_distance(side, under);
   const double start = out > 0.0 ? std::numeric_limits<double>::infinity() : above * above;
-  const double top = std::sqrt(tree_.nearest(p, start, [&](std::int32_t cell) {
-    return patch_distance_squared(p, cell);
-  }));
+  const double top = std::sqrt(
+      tree_.nearest(p, start, [&](std::int32_t cell) { return patch_distance_squared(p, cell); }));
   return above > 0.0 ? top : std::max({-top, side, under});
 }
 

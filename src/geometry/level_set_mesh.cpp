@@ -38,7 +38,8 @@ LevelSetMesh::LevelSetMesh(const Shape& shape, const Aabb& around, double width,
   const double margin = kernel.support() + 2.0 * width;
   origin_ = around.lo.array() - margin;
   const auto count = [&](int k) {
-    return static_cast<Index>(std::ceil((around.hi[k] - around.lo[k] + 2.0 * margin) / (width * edge_)));
+    return static_cast<Index>(
+        std::ceil((around.hi[k] - around.lo[k] + 2.0 * margin) / (width * edge_)));
   };
   blocks_ = {count(0), dim == 3 ? count(1) : 1, count(2)};
   if (dim == 2) origin_.y() = 0.0;
@@ -50,7 +51,8 @@ LevelSetMesh::LevelSetMesh(const Shape& shape, const Aabb& around, double width,
   const double radius = half * std::sqrt(static_cast<double>(dim)) + width;
   std::vector<double> centre(static_cast<std::size_t>(total));
   parallel_for(total, [&](Index b) {
-    const Index bx = b % blocks_.x, by = b / blocks_.x % blocks_.y, bz = b / (blocks_.x * blocks_.y);
+    const Index bx = b % blocks_.x, by = b / blocks_.x % blocks_.y,
+                bz = b / (blocks_.x * blocks_.y);
     Vec3 c = place(bx * edge_, by * edge_, bz * edge_) + Vec3::Constant(half);
     if (dim == 2) c.y() = 0.0;
     centre[static_cast<std::size_t>(b)] = distance_bound(shape, c);
@@ -72,13 +74,14 @@ LevelSetMesh::LevelSetMesh(const Shape& shape, const Aabb& around, double width,
   stored_.resize(near.size());
   parallel_blocks(static_cast<Index>(near.size()), 1, [&](Index begin, Index, Index) {
     const Index b = near[static_cast<std::size_t>(begin)];
-    const Index bx = b % blocks_.x, by = b / blocks_.x % blocks_.y, bz = b / (blocks_.x * blocks_.y);
+    const Index bx = b % blocks_.x, by = b / blocks_.x % blocks_.y,
+                bz = b / (blocks_.x * blocks_.y);
     Block& block = stored_[static_cast<std::size_t>(begin)];
     block.distance.resize(static_cast<std::size_t>(nodes));
     for (Index k = 0; k < nodes; ++k)
-      block.distance[static_cast<std::size_t>(k)] = static_cast<float>(
-          shape.signed_distance(place(bx * edge_ + k % edge_, dim_ == 3 ? by * edge_ + k / edge_ % edge_ : 0,
-                                      bz * edge_ + (dim_ == 3 ? k / (edge_ * edge_) : k / edge_))));
+      block.distance[static_cast<std::size_t>(k)] = static_cast<float>(shape.signed_distance(
+          place(bx * edge_ + k % edge_, dim_ == 3 ? by * edge_ + k / edge_ % edge_ : 0,
+                bz * edge_ + (dim_ == 3 ? k / (edge_ * edge_) : k / edge_))));
   });
   for (const Block& block : stored_)
     for (const float d : block.distance) volume_ += cell_ * std::clamp(0.5 - d / width_, 0.0, 1.0);
@@ -88,25 +91,30 @@ LevelSetMesh::LevelSetMesh(const Shape& shape, const Aabb& around, double width,
 }
 
 Vec3 LevelSetMesh::place(Index x, Index y, Index z) const {
-  return origin_ + width_ * Vec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
+  return origin_ +
+         width_ * Vec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
 }
 
 const LevelSetMesh::Block* LevelSetMesh::find(Index x, Index y, Index z, std::size_t& local) const {
-  const std::int32_t s = slot_[static_cast<std::size_t>(block_index(x / edge_, y / edge_, z / edge_))];
-  local = static_cast<std::size_t>(
-      dim_ == 3 ? (z % edge_ * edge_ + y % edge_) * edge_ + x % edge_ : z % edge_ * edge_ + x % edge_);
+  const std::int32_t s =
+      slot_[static_cast<std::size_t>(block_index(x / edge_, y / edge_, z / edge_))];
+  local = static_cast<std::size_t>(dim_ == 3 ? (z % edge_ * edge_ + y % edge_) * edge_ + x % edge_
+                                             : z % edge_ * edge_ + x % edge_);
   return s >= 0 ? &stored_[static_cast<std::size_t>(s)] : nullptr;
 }
 
 double LevelSetMesh::outside(Index x, Index y, Index z) const {
   const Index ny = dim_ == 3 ? blocks_.y * edge_ : 1;
-  if (x < 0 || y < 0 || z < 0 || x >= blocks_.x * edge_ || y >= ny || z >= blocks_.z * edge_) return 1.0;
+  if (x < 0 || y < 0 || z < 0 || x >= blocks_.x * edge_ || y >= ny || z >= blocks_.z * edge_)
+    return 1.0;
   std::size_t local = 0;
   const Block* block = find(x, y, z, local);
   // The surface cuts the cell of a node; its distance tells by how much, without a jump.
   if (block) return std::clamp(0.5 + block->distance[local] / width_, 0.0, 1.0);
-  return slot_[static_cast<std::size_t>(block_index(x / edge_, y / edge_, z / edge_))] == wholly_outside
-             ? 1.0 : 0.0;
+  return slot_[static_cast<std::size_t>(block_index(x / edge_, y / edge_, z / edge_))] ==
+                 wholly_outside
+             ? 1.0
+             : 0.0;
 }
 
 void LevelSetMesh::sum_outside(Index b, const RelaxKernel& kernel) {
@@ -136,7 +144,8 @@ void LevelSetMesh::sum_outside(Index b, const RelaxKernel& kernel) {
           gradient += kernel.slope(r) * v * apart;
           sum += kernel.value(r) * v;
         }
-    for (int c = 0; c < 3; ++c) block.sums[static_cast<std::size_t>(4 * k + c)] = static_cast<float>(gradient[c]);
+    for (int c = 0; c < 3; ++c)
+      block.sums[static_cast<std::size_t>(4 * k + c)] = static_cast<float>(gradient[c]);
     block.sums[static_cast<std::size_t>(4 * k + 3)] = static_cast<float>(sum);
   }
 }
@@ -144,12 +153,15 @@ void LevelSetMesh::sum_outside(Index b, const RelaxKernel& kernel) {
 LevelSetMesh::Missing LevelSetMesh::missing(const Vec3& p) const {
   Missing out;
   const Vec3 at = (p - origin_) / width_;
-  const Index x = static_cast<Index>(std::floor(at.x())), z = static_cast<Index>(std::floor(at.z()));
+  const Index x = static_cast<Index>(std::floor(at.x())),
+              z = static_cast<Index>(std::floor(at.z()));
   const Index y = dim_ == 3 ? static_cast<Index>(std::floor(at.y())) : 0;
-  const Vec3 part{at.x() - static_cast<double>(x), dim_ == 3 ? at.y() - static_cast<double>(y) : 0.0,
+  const Vec3 part{at.x() - static_cast<double>(x),
+                  dim_ == 3 ? at.y() - static_cast<double>(y) : 0.0,
                   at.z() - static_cast<double>(z)};
   const Index ny = dim_ == 3 ? blocks_.y * edge_ - 1 : 1;
-  if (x < 0 || y < 0 || z < 0 || x + 1 >= blocks_.x * edge_ || y >= ny || z + 1 >= blocks_.z * edge_)
+  if (x < 0 || y < 0 || z < 0 || x + 1 >= blocks_.x * edge_ || y >= ny ||
+      z + 1 >= blocks_.z * edge_)
     return out;
   for (int k = 0; k < 8; ++k) {
     const int i = k & 1, j = k >> 1 & 1, l = k >> 2;

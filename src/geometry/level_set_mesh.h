@@ -23,13 +23,14 @@ class RelaxKernel {
   double factor_;
 };
 
-/// Signed distances on a mesh in a band around the surface, and at each of its nodes the kernel sums
-/// over the outside, sum_l grad W V_l and sum_l W V_l with zeta_l > 0 (second sum of Eq. 84). They
-/// depend on the shape alone, so they are summed once and interpolated for the particles.
+/// Signed distances on a mesh in a band around the surface, and at each of its nodes the kernel
+/// sums over the outside, sum_l grad W V_l and sum_l W V_l with zeta_l > 0 (second sum of Eq. 84).
+/// They depend on the shape alone, so they are summed once and interpolated for the particles.
 class LevelSetMesh {
  public:
   /// `width` is the node distance, m.
-  LevelSetMesh(const Shape& shape, const Aabb& around, double width, const RelaxKernel& kernel, int dim);
+  LevelSetMesh(const Shape& shape, const Aabb& around, double width, const RelaxKernel& kernel,
+               int dim);
 
   struct Missing {
     Vec3 gradient = Vec3::Zero();  ///< 1/m
@@ -50,7 +51,9 @@ class LevelSetMesh {
     Index x, y, z;
   };
 
-  Index block_index(Index bx, Index by, Index bz) const { return (bz * blocks_.y + by) * blocks_.x + bx; }
+  Index block_index(Index bx, Index by, Index bz) const {
+    return (bz * blocks_.y + by) * blocks_.x + bx;
+  }
   Vec3 place(Index x, Index y, Index z) const;
   /// Share of the node's cell that lies outside the surface.
   double outside(Index x, Index y, Index z) const;
@@ -61,9 +64,9 @@ class LevelSetMesh {
   double width_;
   int dim_;
   Node blocks_{};
-  double cell_;                        // volume of a node's cell
+  double cell_;  // volume of a node's cell
   double volume_ = 0.0;
-  std::vector<std::int32_t> slot_;     // block -> stored block, -1 wholly inside, -2 wholly outside
+  std::vector<std::int32_t> slot_;  // block -> stored block, -1 wholly inside, -2 wholly outside
   std::vector<Block> stored_;
 };
 

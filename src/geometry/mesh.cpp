@@ -85,7 +85,8 @@ class Contour {
       for (Index x = 0; x + 1 < n_[0]; ++x) {
         const Index o = z * n_[0] + x;
         const std::array<Index, 4> c{o, o + 1, o + 1 + n_[0], o + n_[0]};  // counter-clockwise
-        // An edge that leaves the solid starts a segment, one that enters ends it: solid to the left.
+        // An edge that leaves the solid starts a segment, one that enters ends it: solid to the
+        // left.
         std::array<std::int32_t, 4> leave{}, enter{};
         int leaves = 0, enters = 0, first_leave = 0, first_enter = 0;
         for (int k = 0; k < 4; ++k) {
@@ -114,15 +115,17 @@ class Contour {
 
  private:
   Vec3 place(Index i) const {
-    return origin_ + spacing_ * Vec3(static_cast<double>(i % n_[0]), static_cast<double>(i / n_[0] % n_[1]),
+    return origin_ + spacing_ * Vec3(static_cast<double>(i % n_[0]),
+                                     static_cast<double>(i / n_[0] % n_[1]),
                                      static_cast<double>(i / (n_[0] * n_[1])));
   }
   bool inside(Index i) const { return value_[at(i)] < 0.0; }
 
   std::int32_t crossing(Index a, Index b) {
     if (a > b) std::swap(a, b);
-    const auto [it, fresh] = seen_.try_emplace(static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint64_t>(b),
-                                               static_cast<std::int32_t>(mesh_.points.size()));
+    const auto [it, fresh] =
+        seen_.try_emplace(static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint64_t>(b),
+                          static_cast<std::int32_t>(mesh_.points.size()));
     if (fresh) {
       // Regula falsi with halving: linear between the nodes is off where the surface is curved.
       Vec3 p = place(a), q = place(b);
@@ -207,8 +210,10 @@ SurfaceMesh surface_mesh(const Shape& shape, double spacing, int dim, const Aabb
   if (!cut) {
     if (const auto* b = dynamic_cast<const Box*>(&shape))
       return dim == 3 ? box_surface(*b)
-                      : closed_outline({{b->min.x(), b->min.z()}, {b->max.x(), b->min.z()},
-                                        {b->max.x(), b->max.z()}, {b->min.x(), b->max.z()}});
+                      : closed_outline({{b->min.x(), b->min.z()},
+                                        {b->max.x(), b->min.z()},
+                                        {b->max.x(), b->max.z()},
+                                        {b->min.x(), b->max.z()}});
     if (const auto* p = dynamic_cast<const Polygon*>(&shape); p && dim == 2)
       return closed_outline(p->corners());
     if (const auto* s = dynamic_cast<const Stl*>(&shape); s && dim == 3)
@@ -228,8 +233,10 @@ SurfaceMesh surface_mesh(const Shape& shape, double spacing, int dim, const Aabb
   cut_shape.clip = box;
   cut_shape.flat = dim == 2;
   Contour contour(cut ? static_cast<const Shape&>(cut_shape) : shape, box, spacing, dim);
-  if (dim == 3) contour.triangulate();
-  else contour.outline();
+  if (dim == 3)
+    contour.triangulate();
+  else
+    contour.outline();
   return contour.take();
 }
 

@@ -16,10 +16,10 @@ struct SurfaceMesh {
   std::vector<std::array<std::int32_t, 2>> segments;
 };
 
-/// The surface of a shape within `clip` (empty: no clip), found on a grid of about `spacing` (m): every
-/// point lies on the surface; edges of the shape are cut off by up to a spacing. Boxes, polygons in 2D
-/// and STL surfaces are passed on exactly. Throws Error (usage) when the shape is unbounded in `clip`;
-/// the grid is coarsened so that it has at most 2e7 nodes.
+/// The surface of a shape within `clip` (empty: no clip), found on a grid of about `spacing` (m):
+/// every point lies on the surface; edges of the shape are cut off by up to a spacing. Boxes,
+/// polygons in 2D and STL surfaces are passed on exactly. Throws Error (usage) when the shape is
+/// unbounded in `clip`; the grid is coarsened so that it has at most 2e7 nodes.
 SurfaceMesh surface_mesh(const Shape& shape, double spacing, int dim, const Aabb& clip = {});
 
 }  // namespace sphgeo

@@ -5,9 +5,9 @@
 
 namespace sphgeo {
 
-/// Outward unit normal at p, Eq. (80), by central differences over +-`step` (m). Across an edge it is
-/// the mean of the faces that meet there; where the differences cancel (the middle of a body) the
-/// step is widened, and only for a point without any direction is it +z. `dim` 2 leaves y out.
+/// Outward unit normal at p, Eq. (80), by central differences over +-`step` (m). Across an edge it
+/// is the mean of the faces that meet there; where the differences cancel (the middle of a body)
+/// the step is widened, and only for a point without any direction is it +z. `dim` 2 leaves y out.
 Vec3 outward_normal(const Shape& shape, const Vec3& p, double step, int dim);
 
 /// The point on the level set `signed_distance = level` (m) reached from p along the normals; p

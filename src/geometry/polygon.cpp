@@ -43,8 +43,9 @@ Schema<Polygon> Polygon::schema() {
 }
 
 Schema<Prism> Prism::schema() {
-  Schema<Prism> s("prism",
-                  "A polygon in the x-z plane extended along y from y_min to y_max; in 2D the polygon.");
+  Schema<Prism> s(
+      "prism",
+      "A polygon in the x-z plane extended along y from y_min to y_max; in 2D the polygon.");
   s.required("points", &Polygon::points, unit::length,
              "The corners in order around the outline, in either sense; y is ignored.")
       .items(3);
@@ -69,8 +70,8 @@ double Polygon::signed_distance(const Vec3& at) const {
   const double section = polygon_distance(Vec2{at.x(), at.z()}, corners_);
   if (flat || (!y_min && !y_max)) return section;
   constexpr double inf = std::numeric_limits<double>::infinity();
-  return extruded_distance(section, std::max(y_min ? *y_min - at.y() : -inf,
-                                             y_max ? at.y() - *y_max : -inf));
+  return extruded_distance(
+      section, std::max(y_min ? *y_min - at.y() : -inf, y_max ? at.y() - *y_max : -inf));
 }
 
 Aabb Polygon::box() const {

@@ -63,15 +63,17 @@ class FootSearch {
     return d;
   }
 
-  /// The bound is a lower limit of the distance, so a true surface point at that distance proves it.
+  /// The bound is a lower limit of the distance, so a true surface point at that distance proves
+  /// it.
   bool foot_is_on_surface(const Vec3& n) const {
     if (std::abs(n.norm() - 1.0) > 1e-3) return false;
     const double beyond = 1e-3 * reach_;
-    return std::abs(g(p_ + reach_ * n)) < 1e-4 * reach_ && g(p_ + (reach_ + beyond) * n) > 0.5 * beyond;
+    return std::abs(g(p_ + reach_ * n)) < 1e-4 * reach_ &&
+           g(p_ + (reach_ + beyond) * n) > 0.5 * beyond;
   }
 
-  /// Distance along a ray to the surface; inf when it is farther than `limit` or never met. Steps as
-  /// long as the bound allows, yet not so short that touching parts stop the ray at their seam.
+  /// Distance along a ray to the surface; inf when it is farther than `limit` or never met. Steps
+  /// as long as the bound allows, yet not so short that touching parts stop the ray at their seam.
   double march(const Vec3& direction, double limit, double start) const {
     double before = 0.0, t = start;
     const double least = limit < inf ? 0.01 * limit : 1e-12;
@@ -131,10 +133,11 @@ class FootSearch {
         for (int y = -1; y <= 1; ++y)
           for (int z = -2; z <= 2; ++z) {
             const Vec3 d(x, y, z);
-            const bool ring = std::max(std::abs(x), std::abs(z)) == 2 && std::abs(x) + std::abs(z) != 0;
+            const bool ring =
+                std::max(std::abs(x), std::abs(z)) == 2 && std::abs(x) + std::abs(z) != 0;
             if (y == 0 && ring) out[1].push_back(d.normalized());  // 16 directions in the plane
             if (std::max(std::abs(x), std::abs(z)) <= 1 && d.norm() > 0.0)
-              out[0].push_back(d.normalized());                    // 26 in space
+              out[0].push_back(d.normalized());  // 26 in space
           }
       return out;
     }();

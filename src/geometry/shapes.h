@@ -1,9 +1,9 @@
 #pragma once
-// The plain structs of the built-in shapes, for code and tests that make them without a deck. Each is
-// declared to the deck and computed in its own .cpp file; a further shape may live in one file alone.
-// Negative inside, positive outside, metres. `flat` marks a 2D scene (the x-z plane): y extents are
-// ignored there and boxes have y = 0. The check rule of each schema sets it; call prepare() after
-// filling a struct by hand.
+// The plain structs of the built-in shapes, for code and tests that make them without a deck. Each
+// is declared to the deck and computed in its own .cpp file; a further shape may live in one file
+// alone. Negative inside, positive outside, metres. `flat` marks a 2D scene (the x-z plane): y
+// extents are ignored there and boxes have y = 0. The check rule of each schema sets it; call
+// prepare() after filling a struct by hand.
 
 #include <memory>
 #include <optional>
@@ -149,10 +149,10 @@ struct HeightField final : SceneShape {
 struct Stl final : SceneShape {
   FilePath file;
   double scale = 1.0;
-  double rotate = 0.0;                        ///< rad, about `axis`
+  double rotate = 0.0;  ///< rad, about `axis`
   Vec3 axis = Vec3::UnitZ();
   Vec3 translate = Vec3::Zero();
-  std::optional<double> weld_tolerance;       ///< m; none: 1e-6 of the size
+  std::optional<double> weld_tolerance;  ///< m; none: 1e-6 of the size
   static Schema<Stl> schema();
   /// Reads, scales, rotates, moves, welds and examines the surface. Throws IoError.
   void prepare();
@@ -182,8 +182,9 @@ struct BoundedShape : SceneShape {
 /// The bound of a BoundedShape, the distance of any other: enough to ask "inside or outside".
 double distance_bound(const Shape& shape, const Vec3& at);
 
-/// For a point whose bound is zero but for round-off: whether it lies on a seam within the solid (where
-/// parts that touch hide each other's surface) rather than on the surface. Looks `reach` (m) around.
+/// For a point whose bound is zero but for round-off: whether it lies on a seam within the solid
+/// (where parts that touch hide each other's surface) rather than on the surface. Looks `reach` (m)
+/// around.
 bool on_inner_seam(const Shape& shape, const Vec3& at, double reach, bool flat);
 
 /// All points of any part. The distance is exact outside; inside it is searched (see refine.h).
@@ -244,8 +245,8 @@ struct Shell final : SceneShape {
 struct Transform final : BoundedShape {
   ShapePtr of;
   double scale = 1.0;
-  double rotate = 0.0;          ///< rad, right-handed about `axis`
-  Vec3 axis = -Vec3::UnitY();   ///< the default turns x towards z
+  double rotate = 0.0;         ///< rad, right-handed about `axis`
+  Vec3 axis = -Vec3::UnitY();  ///< the default turns x towards z
   Vec3 about = Vec3::Zero();
   Vec3 translate = Vec3::Zero();
   static Schema<Transform> schema();
@@ -257,7 +258,9 @@ struct Transform final : BoundedShape {
   Aabb box() const override;
   void inspect(CheckContext& context) const override;
   /// The point of the inner shape that lands on `at`, and the reverse.
-  Vec3 back(const Vec3& at) const { return about + turn_.transpose() * (at - translate - about) / scale; }
+  Vec3 back(const Vec3& at) const {
+    return about + turn_.transpose() * (at - translate - about) / scale;
+  }
   Vec3 forth(const Vec3& p) const { return about + translate + scale * (turn_ * (p - about)); }
 
  private:

@@ -10,12 +10,14 @@ const Register<Shape, Shell> registered{"shell"};
 }
 
 Schema<Shell> Shell::schema() {
-  Schema<Shell> s("shell",
-                  "A hollow body: a skin of even thickness along the surface of another shape. Outer "
-                  "edges of an outside skin are rounded.");
+  Schema<Shell> s(
+      "shell",
+      "A hollow body: a skin of even thickness along the surface of another shape. Outer "
+      "edges of an outside skin are rounded.");
   s.required("of", &Shell::of, unit::none, "The shape whose surface carries the skin.");
   s.required("thickness", &Shell::thickness, unit::length, "Thickness of the skin.").above(0);
-  s.optional("side", &Shell::side, unit::none, "Where the skin lies: inside the shape, around it, or half on each side.")
+  s.optional("side", &Shell::side, unit::none,
+             "Where the skin lies: inside the shape, around it, or half on each side.")
       .choices({"inside", "outside", "centered"});
   s.check([](Shell& b, CheckContext& c) {
     set_scene(b, c);

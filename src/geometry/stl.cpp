@@ -42,14 +42,16 @@ std::vector<Vec2> cut_at_y0(const Triangles& mesh) {
 }  // namespace
 
 Schema<Stl> Stl::schema() {
-  Schema<Stl> s("stl",
-                "A closed surface of triangles from an STL file, text or binary: scaled, turned and "
-                "moved in this order. In 2D its section with the plane y = 0.");
+  Schema<Stl> s(
+      "stl",
+      "A closed surface of triangles from an STL file, text or binary: scaled, turned and "
+      "moved in this order. In 2D its section with the plane y = 0.");
   s.required("file", &Stl::file, unit::none, "The STL file, relative to the deck.");
   s.optional("scale", &Stl::scale, unit::none,
              "Factor that turns the file's lengths into metres: 0.001 for millimetres.")
       .above(0);
-  s.optional("rotate", &Stl::rotate, unit::angle, "Angle, right-handed about `axis` through the origin.");
+  s.optional("rotate", &Stl::rotate, unit::angle,
+             "Angle, right-handed about `axis` through the origin.");
   s.optional("axis", &Stl::axis, unit::none, "Direction of the axis of rotation.").keep_y();
   s.optional("translate", &Stl::translate, unit::length,
              "Displacement, applied last. In 2D its y chooses the section.")
@@ -74,8 +76,7 @@ void Stl::prepare() {
     p = turn * (scale * p) + translate;
     around.extend(p);
   }
-  const Index dropped =
-      weld(mesh, weld_tolerance.value_or(1e-6 * (around.hi - around.lo).norm()));
+  const Index dropped = weld(mesh, weld_tolerance.value_or(1e-6 * (around.hi - around.lo).norm()));
   if (mesh.faces.empty())
     throw IoError(file.path, "no triangle is left after welding: is weld_tolerance too large?");
   health_ = repair_orientation(mesh);
@@ -130,8 +131,9 @@ void Stl::inspect(CheckContext& context) const {
                   "close the holes, or raise weld_tolerance if corners that should meet are apart");
   }
   if (health_.non_manifold_edges > 0)
-    context.warning("file", count(health_.non_manifold_edges, "edge has", "edges have") +
-                                " more than two faces (the surface is not manifold there)",
+    context.warning("file",
+                    count(health_.non_manifold_edges, "edge has", "edges have") +
+                        " more than two faces (the surface is not manifold there)",
                     "separate or join the bodies that touch");
   if (health_.flipped_faces > 0)
     context.warning("file",

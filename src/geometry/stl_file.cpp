@@ -132,9 +132,11 @@ Triangles read_stl(const std::string& path) {
   // Some binary files begin with "solid" too, so the size decides first, then the first words.
   const bool has_header = bytes.size() >= header_bytes + 4;
   const bool size_fits =
-      has_header && bytes.size() == header_bytes + 4 + face_bytes * std::size_t{read_u32(bytes.data() + header_bytes)};
-  const bool text = !size_fits && bytes.find("solid") < header_bytes &&
-                    bytes.find("facet") != std::string::npos;
+      has_header &&
+      bytes.size() ==
+          header_bytes + 4 + face_bytes * std::size_t{read_u32(bytes.data() + header_bytes)};
+  const bool text =
+      !size_fits && bytes.find("solid") < header_bytes && bytes.find("facet") != std::string::npos;
   if (!text && !has_header) throw IoError(path, "not an STL file");
   Triangles mesh = text ? read_text(bytes, path) : read_binary(bytes, path);
   if (mesh.faces.empty()) throw IoError(path, "the STL file holds no triangles");

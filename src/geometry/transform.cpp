@@ -13,7 +13,8 @@ Schema<Transform> Transform::schema() {
   Schema<Transform> s("transform",
                       "Another shape, scaled and turned about a point and then moved.");
   s.required("of", &Transform::of, unit::none, "The shape to place.");
-  s.optional("scale", &Transform::scale, unit::none, "Factor on all lengths, about `about`.").above(0);
+  s.optional("scale", &Transform::scale, unit::none, "Factor on all lengths, about `about`.")
+      .above(0);
   s.optional("rotate", &Transform::rotate, unit::angle, "Angle, right-handed about `axis`.");
   s.optional("axis", &Transform::axis, unit::none,
              "Direction of the axis of rotation; the default [0, -1, 0] turns x towards z, "

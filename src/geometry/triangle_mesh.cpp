@@ -148,7 +148,8 @@ double enclosed_volume(const Triangles& mesh) {
   const Vec3 o = mesh.points.front();  // a nearby origin keeps the digits
   double six = 0.0;
   for (const auto& f : mesh.faces)
-    six += (mesh.points[at(f[0])] - o).cross(mesh.points[at(f[1])] - o).dot(mesh.points[at(f[2])] - o);
+    six +=
+        (mesh.points[at(f[0])] - o).cross(mesh.points[at(f[1])] - o).dot(mesh.points[at(f[2])] - o);
   return six / 6.0;
 }
 
@@ -188,7 +189,8 @@ SurfaceDistance::SurfaceDistance(Triangles mesh) : mesh_(std::move(mesh)) {
         const double size = area.norm();
         d.area += area;
         weight[k] += size;
-        moment += size * (mesh_.points[at(f[0])] + mesh_.points[at(f[1])] + mesh_.points[at(f[2])]) / 3.0;
+        moment +=
+            size * (mesh_.points[at(f[0])] + mesh_.points[at(f[1])] + mesh_.points[at(f[2])]) / 3.0;
       }
     } else {
       for (const std::int32_t child : {node.first, node.right}) {
@@ -238,11 +240,12 @@ double SurfaceDistance::winding_number(const Vec3& p) const {
 }
 
 double SurfaceDistance::signed_distance(const Vec3& p) const {
-  const double best2 = tree_.nearest(p, std::numeric_limits<double>::infinity(), [&](std::int32_t i) {
-    const auto& f = mesh_.faces[at(i)];
-    return triangle_distance_squared(p, mesh_.points[at(f[0])], mesh_.points[at(f[1])],
-                                     mesh_.points[at(f[2])]);
-  });
+  const double best2 =
+      tree_.nearest(p, std::numeric_limits<double>::infinity(), [&](std::int32_t i) {
+        const auto& f = mesh_.faces[at(i)];
+        return triangle_distance_squared(p, mesh_.points[at(f[0])], mesh_.points[at(f[1])],
+                                         mesh_.points[at(f[2])]);
+      });
   const double distance = std::sqrt(best2);
   if (!box_.contains(p)) return distance;
   return winding_number(p) > 0.5 ? -distance : distance;

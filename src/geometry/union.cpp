@@ -24,8 +24,8 @@ double Union::signed_distance(const Vec3& at) const {
   // Outside, the nearest part decides, and each part knows its own distance.
   double d = std::numeric_limits<double>::infinity();
   for (const ShapePtr& part : of) d = std::min(d, part->signed_distance(at));
-  // Parts that touch (but for round-off) leave a seam within the solid where every part says "zero";
-  // sinking the surface by a hair makes the seam solid for the search.
+  // Parts that touch (but for round-off) leave a seam within the solid where every part says
+  // "zero"; sinking the surface by a hair makes the seam solid for the search.
   const double hair = 1e-12 * (1.0 + at.cwiseAbs().maxCoeff());
   const bool seam = std::abs(d) < hair && on_inner_seam(*this, at, 1e3 * hair, flat);
   if (d >= 0.0 && !seam) return d;

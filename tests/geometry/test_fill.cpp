@@ -33,7 +33,8 @@ TEST_SUITE("geometry") {
   TEST_CASE("fill: area and volume of curved shapes within 1 %, points inside, each once") {
     const ShapePtr disc = shape_of("{type: sphere, center: [0, 0, 0], radius: 1}", 2);
     const auto in_plane = fill_lattice(*disc, 0.02, 2);
-    CHECK(static_cast<double>(in_plane.size()) * 4e-4 == doctest::Approx(std::numbers::pi).epsilon(0.01));
+    CHECK(static_cast<double>(in_plane.size()) * 4e-4 ==
+          doctest::Approx(std::numbers::pi).epsilon(0.01));
     const ShapePtr ball = shape_of("{type: sphere, center: [0, 0, 0], radius: 1}", 3);
     const auto points = fill_lattice(*ball, 0.05, 3);
     CHECK(static_cast<double>(points.size()) * 1.25e-4 ==
@@ -44,13 +45,16 @@ TEST_SUITE("geometry") {
       seen.insert({p.x(), p.y(), p.z()});
     }
     CHECK(seen.size() == points.size());
-    CHECK(estimate_fill(*ball, 0.05, 3, {}) == doctest::Approx(static_cast<double>(points.size())).epsilon(0.02));
+    CHECK(estimate_fill(*ball, 0.05, 3, {}) ==
+          doctest::Approx(static_cast<double>(points.size())).epsilon(0.02));
   }
 
   TEST_CASE("fill: skipping by distance loses nothing of a thin composed shape") {
     const ShapePtr s = shape_of(
-        "{type: difference, of: [{type: box, min: [0,0,0], max: [1,1,1]}, {type: sphere, center: [0.5,0.5,0.5], "
-        "radius: 0.59}, {type: sphere, center: [0.2,0.2,0.2], radius: 0.11}]}", 3);
+        "{type: difference, of: [{type: box, min: [0,0,0], max: [1,1,1]}, {type: sphere, center: "
+        "[0.5,0.5,0.5], "
+        "radius: 0.59}, {type: sphere, center: [0.2,0.2,0.2], radius: 0.11}]}",
+        3);
     const double dp = 0.04;
     std::size_t count = 0;
     for (int x = 0; x < 25; ++x)
@@ -63,13 +67,18 @@ TEST_SUITE("geometry") {
 
   TEST_CASE("fill: points on the seam of touching parts are inside") {
     const ShapePtr u = shape_of(
-        "{type: union, of: [{type: box, min: [0,0,0], max: [0.35,1,1]}, {type: box, min: [0.35,0,0], max: [1,1,1]}]}", 3);
+        "{type: union, of: [{type: box, min: [0,0,0], max: [0.35,1,1]}, {type: box, min: "
+        "[0.35,0,0], max: [1,1,1]}]}",
+        3);
     CHECK(fill_lattice(*u, 0.1, 3).size() == 1000);
     // The lattice does not take the surface itself for a seam.
-    const ShapePtr b = shape_of("{type: union, of: [{type: box, min: [0,0,0], max: [0.35,1,1]}]}", 3);
+    const ShapePtr b =
+        shape_of("{type: union, of: [{type: box, min: [0,0,0], max: [0.35,1,1]}]}", 3);
     CHECK(fill_lattice(*b, 0.1, 3).size() == 300);
     const ShapePtr flat = shape_of(
-        "{type: union, of: [{type: box, min: [0,0,0], max: [0.35,1,1]}, {type: box, min: [0.35,0,0], max: [1,1,1]}]}", 2);
+        "{type: union, of: [{type: box, min: [0,0,0], max: [0.35,1,1]}, {type: box, min: "
+        "[0.35,0,0], max: [1,1,1]}]}",
+        2);
     CHECK(flat->signed_distance({0.35, 0, 0.3}) == doctest::Approx(-0.3).epsilon(0.02));
     CHECK(flat->signed_distance({0.35, 0, 0.0}) == doctest::Approx(0.0));
   }
@@ -96,7 +105,8 @@ TEST_SUITE("geometry") {
       CHECK(p.norm() > 0.8 - 1e-9);
     }
     const auto ring = fill_layers(*disc, 0.02, 2, 0.2, LayerSide::outside);
-    CHECK(static_cast<double>(ring.size()) * 4e-4 == doctest::Approx(std::numbers::pi * 0.44).epsilon(0.02));
+    CHECK(static_cast<double>(ring.size()) * 4e-4 ==
+          doctest::Approx(std::numbers::pi * 0.44).epsilon(0.02));
   }
 
   TEST_CASE("fill: one and three threads give the same points in the same order") {

@@ -23,13 +23,16 @@ double at(const ShapePtr& s, double x, double y, double z) { return s->signed_di
 TEST_SUITE("geometry") {
   TEST_CASE("height field: an inclined plane is a plane") {
     // z = x / 2 over [0, 4] x [0, 2]
-    const ShapePtr h = shape_of("{type: height_field, heights: [0, 0.5, 1, 1.5, 2, 0, 0.5, 1, 1.5, 2], columns: 5, "
-                                "spacing: 1, spacing_y: 2, bottom: -3}", 3);
+    const ShapePtr h = shape_of(
+        "{type: height_field, heights: [0, 0.5, 1, 1.5, 2, 0, 0.5, 1, 1.5, 2], columns: 5, "
+        "spacing: 1, spacing_y: 2, bottom: -3}",
+        3);
     Hash hash;
     for (int k = 0; k < 100; ++k) {
       const Vec3 p = hash.in({{1.5, 0.6, 0.3}, {2.5, 1.4, 1.7}}, 3);
       const double exact = (p.z() - 0.5 * p.x()) / std::sqrt(1.25);
-      if (std::abs(exact) < 0.5) CHECK(h->signed_distance(p) == doctest::Approx(exact).epsilon(1e-9));
+      if (std::abs(exact) < 0.5)
+        CHECK(h->signed_distance(p) == doctest::Approx(exact).epsilon(1e-9));
     }
     CHECK(at(h, -1, 1, -1) == doctest::Approx(1.0));
     CHECK(at(h, 2, 1, -5) == doctest::Approx(2.0));
@@ -48,7 +51,8 @@ TEST_SUITE("geometry") {
     f.prepare();
     std::vector<Vec3> surface;
     for (int i = 0; i <= 200; ++i)
-      for (int j = 0; j <= 200; ++j) surface.emplace_back(i * 0.01, j * 0.01, f.height(i * 0.01, j * 0.01));
+      for (int j = 0; j <= 200; ++j)
+        surface.emplace_back(i * 0.01, j * 0.01, f.height(i * 0.01, j * 0.01));
     Hash hash;
     for (int k = 0; k < 100; ++k) {
       const Vec3 p = hash.in({{0.7, 0.7, -0.2}, {1.3, 1.3, 0.8}}, 3);
@@ -65,20 +69,26 @@ TEST_SUITE("geometry") {
     const auto path = std::filesystem::temp_directory_path() / "sphgeo_test_terrain.csv";
     std::ofstream(path) << "# metres\n100,101,102\n110,111,112\n";
     const std::string file = "file: " + path.string();
-    const ShapePtr h = shape_of("{type: height_field, " + file + ", spacing: 10, origin: [0, 0, -100]}", 3);
+    const ShapePtr h =
+        shape_of("{type: height_field, " + file + ", spacing: 10, origin: [0, 0, -100]}", 3);
     CHECK(std::abs(at(h, 10, 5, 6)) < 1e-9);
     CHECK(std::isinf(h->box().lo.z()));
-    const ShapePtr flat = shape_of("{type: height_field, " + file + ", spacing: 10, section: 5, scale: 0.1}", 2);
+    const ShapePtr flat =
+        shape_of("{type: height_field, " + file + ", spacing: 10, section: 5, scale: 0.1}", 2);
     CHECK(at(flat, 10, 0, 10.6) == doctest::Approx(0.0).epsilon(1e-9));
     CHECK(flat->box().lo.y() == 0.0);
     std::ofstream(path) << "100,,102\n110,111,112\n";
-    CHECK(read_shape("{type: height_field, " + file + ", spacing: 10}", 3).messages().find("shape.file") !=
-          std::string::npos);
+    CHECK(read_shape("{type: height_field, " + file + ", spacing: 10}", 3)
+              .messages()
+              .find("shape.file") != std::string::npos);
     std::filesystem::remove(path);
     CHECK(read_shape("{type: height_field, heights: [1, 2, 3], columns: 2, spacing: 1}", 3)
-              .messages().find("do not fill rows") != std::string::npos);
-    CHECK(read_shape("{type: height_field, spacing: 1}", 3).messages().find("either") != std::string::npos);
+              .messages()
+              .find("do not fill rows") != std::string::npos);
+    CHECK(read_shape("{type: height_field, spacing: 1}", 3).messages().find("either") !=
+          std::string::npos);
     CHECK(read_shape("{type: height_field, heights: [1, 2], spacing: 1, bottom: 1.5}", 3)
-              .messages().find("bottom") != std::string::npos);
+              .messages()
+              .find("bottom") != std::string::npos);
   }
 }

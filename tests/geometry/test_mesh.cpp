@@ -19,7 +19,8 @@ std::pair<double, bool> outline_area(const SurfaceMesh& m) {
   double twice = 0.0;
   std::vector<int> balance(m.points.size(), 0);
   for (const auto& s : m.segments) {
-    const Vec3 &a = m.points[static_cast<std::size_t>(s[0])], &b = m.points[static_cast<std::size_t>(s[1])];
+    const Vec3 &a = m.points[static_cast<std::size_t>(s[0])],
+               &b = m.points[static_cast<std::size_t>(s[1])];
     twice += a.x() * b.z() - a.z() * b.x();
     ++balance[static_cast<std::size_t>(s[0])];
     --balance[static_cast<std::size_t>(s[1])];
@@ -33,9 +34,10 @@ std::pair<double, bool> outline_area(const SurfaceMesh& m) {
 
 TEST_SUITE("geometry") {
   TEST_CASE("surface mesh: closed and outward in 3D") {
-    for (const char* yaml : {"{type: sphere, center: [0, 0, 0], radius: 1}",
-                             "{type: box, min: [-1, -1, -1], max: [1, 1, 0.0471976]}",
-                             "{type: shell, of: {type: sphere, center: [0, 0, 0], radius: 1.2}, thickness: 0.2094}"}) {
+    for (const char* yaml :
+         {"{type: sphere, center: [0, 0, 0], radius: 1}",
+          "{type: box, min: [-1, -1, -1], max: [1, 1, 0.0471976]}",
+          "{type: shell, of: {type: sphere, center: [0, 0, 0], radius: 1.2}, thickness: 0.2094}"}) {
       CAPTURE(yaml);
       const ShapePtr s = shape_of(yaml, 3);
       const SurfaceMesh m = surface_mesh(*s, 0.07, 3);
@@ -54,7 +56,8 @@ TEST_SUITE("geometry") {
     Sphere s;
     s.radius = 1.0;
     const SurfaceMesh m = surface_mesh(s, 0.07, 3);
-    CHECK(enclosed_volume({m.points, m.triangles}) == doctest::Approx(4.0 / 3.0 * std::numbers::pi).epsilon(0.01));
+    CHECK(enclosed_volume({m.points, m.triangles}) ==
+          doctest::Approx(4.0 / 3.0 * std::numbers::pi).epsilon(0.01));
   }
 
   TEST_CASE("surface mesh: closed outlines with the solid on the left in 2D") {
@@ -67,8 +70,12 @@ TEST_SUITE("geometry") {
     area("{type: sphere, center: [3, 0, 1], radius: 1}", std::numbers::pi);
     area("{type: box, min: [0, 0, 0], max: [2, 0, 1]}", 2.0);
     area("{type: polygon, points: [[0,0,0],[0,0,1],[1,0,0]]}", 0.5);
-    area("{type: shell, of: {type: sphere, center: [0, 0, 0], radius: 1}, thickness: 0.5}", 0.75 * std::numbers::pi);
-    area("{type: union, of: [{type: box, min: [0,0,0], max: [1,0,1]}, {type: box, min: [1,0,1], max: [2,0,2]}]}", 2.0);
+    area("{type: shell, of: {type: sphere, center: [0, 0, 0], radius: 1}, thickness: 0.5}",
+         0.75 * std::numbers::pi);
+    area(
+        "{type: union, of: [{type: box, min: [0,0,0], max: [1,0,1]}, {type: box, min: [1,0,1], "
+        "max: [2,0,2]}]}",
+        2.0);
   }
 
   TEST_CASE("surface mesh: unbounded shapes need a clip and are closed by it") {

@@ -45,9 +45,11 @@ void check_fitted(const std::string& yaml, double dp, int dim, double measure) {
         least_gap = std::min(least_gap, (r.positions[i] - r.positions[j]).norm());
   }
   CHECK(least_gap > 0.7 * dp);
-  CHECK(static_cast<double>(r.positions.size()) * r.particle_volume == doctest::Approx(measure).epsilon(0.01));
+  CHECK(static_cast<double>(r.positions.size()) * r.particle_volume ==
+        doctest::Approx(measure).epsilon(0.01));
   // A closed layer holds about surface / dp^(dim-1) particles.
-  CHECK(outermost > 0.75 * std::pow(measure / std::pow(dp, dim), (dim - 1.0) / dim) * (dim == 2 ? 3.0 : 4.2));
+  CHECK(outermost >
+        0.75 * std::pow(measure / std::pow(dp, dim), (dim - 1.0) / dim) * (dim == 2 ? 3.0 : 4.2));
 }
 
 }  // namespace
@@ -59,7 +61,9 @@ TEST_SUITE("geometry") {
       const double dp = 0.1, h = 0.13;
       const RelaxKernel kernel(h, dim);
       CHECK(kernel.value(2.0 * h) == 0.0);
-      CHECK(kernel.slope(0.1) == doctest::Approx((kernel.value(0.1001) - kernel.value(0.0999)) / 2e-4 / 0.1).epsilon(1e-5));
+      CHECK(kernel.slope(0.1) ==
+            doctest::Approx((kernel.value(0.1001) - kernel.value(0.0999)) / 2e-4 / 0.1)
+                .epsilon(1e-5));
       Box b;
       b.max = {2, 2, 2};
       b.flat = dim == 2;
@@ -81,14 +85,15 @@ TEST_SUITE("geometry") {
     check_fitted("{type: sphere, center: [0, 0, 0], radius: 1}", 0.16, 3, 4.18879);
   }
 
-  TEST_CASE("relaxation: a rotated box and a disc are even, a lattice box is at rest") {
+  TEST_CASE("relaxation: a turned box is even, a lattice box is at rest") {
     const OneThread one;
     const ShapePtr b = shape_of("{type: box, min: [0, 0, 0], max: [1, 0, 1]}", 2);
     const RelaxFillResult rest = relax_fill(*b, 0.05, 2);
     CHECK(rest.converged);
     CHECK(rest.density_spread < 0.01);
     CHECK(rest.surface_offset < 0.01);
-    const ShapePtr t = shape_of("{type: transform, of: {type: box, min: [0, 0, 0], max: [1, 0, 1]}, rotate: 27 deg}", 2);
+    const ShapePtr t = shape_of(
+        "{type: transform, of: {type: box, min: [0, 0, 0], max: [1, 0, 1]}, rotate: 27 deg}", 2);
     const RelaxFillResult turned = relax_fill(*t, 0.05, 2);
     CHECK(turned.density_spread < 0.03);
     CHECK(turned.surface_offset < 0.1);

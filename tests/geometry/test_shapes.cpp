@@ -1,4 +1,5 @@
-// Distances of the single shapes: closed forms, gradients, and brute force over their surface points.
+// Distances of the single shapes: closed forms, gradients, and brute force over their surface
+// points.
 
 #include <doctest/doctest.h>
 
@@ -36,8 +37,8 @@ std::vector<Vec3> spread(const SurfaceMesh& mesh, double gap) {
   return out;
 }
 
-/// Compares the distance at random points with the nearest of many points on the surface, and looks at
-/// the slope along the normal, which must be 1.
+/// Compares the distance at random points with the nearest of many points on the surface, and looks
+/// at the slope along the normal, which must be 1.
 void against_surface_points(const std::string& yaml, int dim, double gap) {
   CAPTURE(yaml);
   CAPTURE(dim);
@@ -58,7 +59,8 @@ void against_surface_points(const std::string& yaml, int dim, double gap) {
     worst_far = std::max(worst_far, nearest - std::abs(d));
     // Away from ridges the foot of the normal lies on the surface.
     const Vec3 n = outward_normal(*s, p, 1e-6, dim);
-    const double slope = (s->signed_distance(p + 1e-6 * n) - s->signed_distance(p - 1e-6 * n)) / 2e-6;
+    const double slope =
+        (s->signed_distance(p + 1e-6 * n) - s->signed_distance(p - 1e-6 * n)) / 2e-6;
     if (std::abs(slope - 1.0) > 1e-3) worst_gradient += 1.0;
   }
   CHECK(inside > 5);
@@ -94,11 +96,13 @@ TEST_SUITE("geometry") {
     CHECK(at(c, 4, 0, 6) == doctest::Approx(5.0));
     const ShapePtr k = shape_of("{type: capsule, from: [0, 0, 0], to: [0, 0, 2], radius: 1}", 3);
     CHECK(at(k, 3, 0, 6) == doctest::Approx(4.0));
-    const ShapePtr cone = shape_of("{type: cone, from: [0, 0, 0], to: [0, 0, 1], radius_from: 1}", 3);
+    const ShapePtr cone =
+        shape_of("{type: cone, from: [0, 0, 0], to: [0, 0, 1], radius_from: 1}", 3);
     CHECK(at(cone, 0, 0, 2) == doctest::Approx(1.0));
     CHECK(at(cone, 1, 0, 1) == doctest::Approx(std::sqrt(0.5)));
     CHECK(at(cone, 0, 0, 0.1) == doctest::Approx(-0.1));
-    const ShapePtr disc = shape_of("{type: cylinder, from: [0, 0, 1], to: [0, 5, 1], radius: 0.5}", 2);
+    const ShapePtr disc =
+        shape_of("{type: cylinder, from: [0, 0, 1], to: [0, 5, 1], radius: 0.5}", 2);
     CHECK(at(disc, 0, 0, 0) == doctest::Approx(0.5));
     const ShapePtr h = shape_of("{type: half_space, point: [0, 0, 1], normal: [0, 0, 2]}", 3);
     CHECK(at(h, 5, 5, 3) == doctest::Approx(2.0));
@@ -127,8 +131,10 @@ TEST_SUITE("geometry") {
     const ShapePtr p = shape_of("{type: polygon, " + l + "}", 2);
     CHECK(at(p, 1.5, 0, 1.5) == doctest::Approx(0.5));
     CHECK(at(p, 0.9, 0, 0.9) == doctest::Approx(-std::sqrt(0.02)));
-    const ShapePtr back =
-        shape_of("{type: polygon, points: [[0,0,2],[1,0,2],[1,0,1],[2,0,1],[2,0,0],[0,0,0],[0,0,0],[0,0,2]]}", 2);
+    const ShapePtr back = shape_of(
+        "{type: polygon, points: "
+        "[[0,0,2],[1,0,2],[1,0,1],[2,0,1],[2,0,0],[0,0,0],[0,0,0],[0,0,2]]}",
+        2);
     CHECK(at(back, 0.9, 0, 0.9) == at(p, 0.9, 0, 0.9));
     const ShapePtr prism = shape_of("{type: prism, " + l + ", y_min: 0, y_max: 1}", 3);
     CHECK(at(prism, 0.5, 0.9, 0.5) == doctest::Approx(-0.1));
@@ -143,13 +149,18 @@ TEST_SUITE("geometry") {
       const double gap = dim == 2 ? 0.01 : 0.08;
       against_surface_points("{type: box, min: [0, 0, 0], max: [1, 0.8, 0.6]}", dim, gap);
       against_surface_points("{type: sphere, center: [0.1, 0, 0], radius: 0.7}", dim, gap);
-      against_surface_points("{type: ellipsoid, center: [0, 0, 0], semi_axes: [1, 0.5, 0.4]}", dim, gap);
-      against_surface_points("{type: cylinder, from: [0, 0, 0], to: [0.5, 0, 1], radius: 0.4}", dim, gap);
-      against_surface_points("{type: cone, from: [0, 0, 0], to: [0.2, 0, 1], radius_from: 0.6, radius_to: 0.2}",
-                             dim, gap);
-      against_surface_points("{type: capsule, from: [0, 0, 0], to: [0.5, 0, 1], radius: 0.3}", dim, gap);
-      against_surface_points("{type: prism, y_min: 0, y_max: 0.7, points: [[0,0,0],[1,0,0],[0.4,0,0.4],[0,0,1]]}",
-                             dim, gap);
+      against_surface_points("{type: ellipsoid, center: [0, 0, 0], semi_axes: [1, 0.5, 0.4]}", dim,
+                             gap);
+      against_surface_points("{type: cylinder, from: [0, 0, 0], to: [0.5, 0, 1], radius: 0.4}", dim,
+                             gap);
+      against_surface_points(
+          "{type: cone, from: [0, 0, 0], to: [0.2, 0, 1], radius_from: 0.6, radius_to: 0.2}", dim,
+          gap);
+      against_surface_points("{type: capsule, from: [0, 0, 0], to: [0.5, 0, 1], radius: 0.3}", dim,
+                             gap);
+      against_surface_points(
+          "{type: prism, y_min: 0, y_max: 0.7, points: [[0,0,0],[1,0,0],[0.4,0,0.4],[0,0,1]]}", dim,
+          gap);
     }
   }
 
@@ -160,7 +171,8 @@ TEST_SUITE("geometry") {
       CAPTURE(all);
       CHECK(all.find(what) != std::string::npos);
     };
-    says("{type: box, min: [0, 0, 0], max: [1, 0, 1]}", 3, "shape.max: max must be larger than min in y");
+    says("{type: box, min: [0, 0, 0], max: [1, 0, 1]}", 3,
+         "shape.max: max must be larger than min in y");
     says("{type: sphere, center: [0, 0, 0], radius: 0}", 3, "shape.radius");
     says("{type: ellipsoid, center: [0, 0, 0], semi_axes: [1, 0, 1]}", 3, "semi_axes");
     says("{type: cylinder, from: [0, 0, 0], to: [0, 0, 0], radius: 1}", 3, "coincide");
@@ -176,7 +188,8 @@ TEST_SUITE("geometry") {
   TEST_CASE("normals at faces, edges and in the middle; projection to a level") {
     const ShapePtr b = shape_of("{type: box, min: [0, 0, 0], max: [1, 1, 1]}", 3);
     CHECK((outward_normal(*b, {0.9, 0.5, 0.5}, 1e-3, 3) - Vec3(1, 0, 0)).norm() < 1e-9);
-    CHECK((outward_normal(*b, {1.1, 0.5, 1.1}, 1e-3, 3) - Vec3(1, 0, 1).normalized()).norm() < 1e-9);
+    CHECK((outward_normal(*b, {1.1, 0.5, 1.1}, 1e-3, 3) - Vec3(1, 0, 1).normalized()).norm() <
+          1e-9);
     CHECK(outward_normal(*b, {0.5, 0.5, 0.5}, 1e-3, 3).norm() == doctest::Approx(1.0));
     const ShapePtr e = shape_of("{type: ellipsoid, center: [0, 0, 0], semi_axes: [1, 0, 0.5]}", 2);
     const Vec3 q = project_to_level(*e, {0.6, 0, 0.2}, -0.05, 1e-3, 2);

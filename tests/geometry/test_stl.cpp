@@ -98,7 +98,8 @@ TEST_SUITE("geometry") {
       const Vec3 p = hash.in({Vec3::Constant(-0.5), Vec3::Constant(1.5)}, 3);
       CHECK(cube.signed_distance(p) == doctest::Approx(box.signed_distance(p)).epsilon(1e-9));
       CHECK(std::abs(ball.signed_distance(p) - (p.norm() - 1.0)) < 0.004);
-      CHECK(std::abs(ball.winding_number(p) - (p.norm() < 1.0 ? 1.0 : 0.0)) < (std::abs(p.norm() - 1.0) > 0.01 ? 0.05 : 1.0));
+      CHECK(std::abs(ball.winding_number(p) - (p.norm() < 1.0 ? 1.0 : 0.0)) <
+            (std::abs(p.norm() - 1.0) > 0.01 ? 0.05 : 1.0));
     }
     CHECK(enclosed_volume(cube.mesh()) == doctest::Approx(1.0));
     CHECK(enclosed_volume(fine) == doctest::Approx(4.0 / 3.0 * std::numbers::pi).epsilon(0.01));
@@ -207,7 +208,8 @@ TEST_SUITE("geometry") {
     CHECK_THROWS_WITH(read_stl(file.path), doctest::Contains("line 4"));
     std::ofstream(file.path) << "solid x\nfacet\nvertex 0 0 0\nvertex 0 1 0\nendfacet\n";
     CHECK_THROWS_WITH(read_stl(file.path), doctest::Contains("2 corners"));
-    std::ofstream(file.path) << "solid x\nfacet\nvertex 0 0 nan\nvertex 0 1 0\nvertex 1 0 0\nendfacet\n";
+    std::ofstream(file.path)
+        << "solid x\nfacet\nvertex 0 0 nan\nvertex 0 1 0\nvertex 1 0 0\nendfacet\n";
     CHECK_THROWS_WITH(read_stl(file.path), doctest::Contains("not finite"));
     std::ofstream(file.path) << "hello";
     CHECK_THROWS_WITH(read_stl(file.path), doctest::Contains("not an STL"));
