@@ -1,0 +1,110 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.h"
+#include "cli/recorder.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "scene/build.h"
+#include "scene/cross_check.h"
+
+namespace sphgeo {
+namespace {
+
+std::string bytes_text(std::size_t bytes) {
+  const double b = static_cast<double>(bytes);
+  if (b < 1e6) return fmt::format("{:.1f} kB", b / 1e3);
+  if (b < 1e9) return fmt::format("{:.1f} MB", b / 1e6);
+  return fmt::format("{:.2f} GB", b / 1e9);
+}
+
+nlohmann::ordered_json plan_json(const auto& world, const auto& plan) {
+  nlohmann::ordered_json j;
+  j["plan"] = nlohmann::ordered_json::array();
+  for (const auto& e : plan.effects())
+    j["plan"].push_back({{"stage", stage_name(e.info.stage)}, {"name", e.info.name}, {"equations", e.info.equations},
+                         {"acts_on", e.effect->acts_on()}, {"because", e.because}});
+  j["unused"] = nlohmann::ordered_json::array();
+  for (const auto& u : plan.unused()) j["unused"].push_back({{"name", u.name}, {"because", u.because}});
+  j["lists"] = nlohmann::ordered_json::array();
+  for (const auto& [key, list] : world.lists())
+    j["lists"].push_back({{"target", key.first}, {"source", key.second}, {"pairs", list.pairs()}, {"bytes", list.bytes()}});
+  j["fields"] = nlohmann::ordered_json::array();
+  constexpr const char* lifetimes[] = {"state", "reference", "derived"};
+  for (const auto& set : world.sets())
+    for (const auto& [name, field] : set->fields())
+      j["fields"].push_back({{"set", set->name()}, {"name", name}, {"unit", field->spec().unit.symbol},
+                             {"lifetime", lifetimes[static_cast<int>(field->spec().lifetime)]}});
+  j["memory_bytes"] = world.bytes();
+  return j;
+}
+
+void print_plan(const nlohmann::ordered_json& j) {
+  fmt::print("\nplan: what runs, and why\n");
+  for (const auto& e : j["plan"])
+    fmt::print("  {:<13} {:<24} {:<22} {:<18} {}\n", e["stage"].get<std::string>(), e["name"].get<std::string>(),
+               e["equations"].get<std::string>(), e["acts_on"].get<std::string>(), e["because"].get<std::string>());
+  fmt::print("not used\n");
+  for (const auto& u : j["unused"])
+    fmt::print("  {:<38} {}\n", u["name"].get<std::string>(), u["because"].get<std::string>());
+  fmt::print("neighbor lists\n");
+  for (const auto& l : j["lists"])
+    fmt::print("  {} -> {}: {} pairs, {}\n", l["target"].get<std::string>(), l["source"].get<std::string>(),
+               l["pairs"].get<long>(), bytes_text(l["bytes"].get<std::size_t>()));
+  fmt::print("fields\n");
+  std::string set;
+  for (const auto& f : j["fields"]) {
+    if (f["set"] != set) fmt::print("{}  {}:", set.empty() ? "" : "\n", f["set"].get<std::string>());
+    set = f["set"];
+    fmt::print(" {}({})", f["name"].get<std::string>(), f["lifetime"].get<std::string>());
+  }
+  fmt::print("\nmemory {}\n", bytes_text(j["memory_bytes"].get<std::size_t>()));
+}
+
+template <int Dim>
+int check(const Model& model, const CheckOptions& options) {
+  Diagnostics found = model.warnings;
+  Scene<Dim> scene = build_scene<Dim>(model, found);
+  check_scene(scene, found);
+  if (found.has_errors()) throw DeckError(found);
+  if (!found.items().empty()) std::cerr << found.render();
+  World<Dim>& world = *scene.world;
+  std::vector<std::string> names;
+  for (const auto& set : world.sets()) names.push_back(set->name());
+  Plan<Dim> plan(world, wishes_of(model, names));
+  world.rearrange();
+
+  nlohmann::ordered_json j = plan_json(world, plan);
+  nlohmann::ordered_json particles;
+  Index total = 0;
+  for (const auto& set : world.sets()) {
+    particles[set->name()] = set->size();
+    total += set->size();
+  }
+  j["particles"] = particles;
+  j["sound_speed"] = {{"value", scene.sound.value}, {"max_speed", scene.sound.max_speed}, {"because", scene.sound.because}};
+  if (options.json) {
+    std::cout << j.dump(2) << "\n";
+    return 0;
+  }
+  fmt::print("{}: {} dimensions, spacing {} m, {} s\n", model.title.empty() ? options.deck : model.title, Dim, model.resolution, model.end_time);
+  for (const auto& set : world.sets()) fmt::print("  {:<10} {:>10} particles\n", set->name(), set->size());
+  for (const auto& [name, n] : scene.body_particles) fmt::print("    body '{}': {}\n", name, n);
+  for (const auto& [name, n] : scene.boundary_particles) fmt::print("    boundary '{}': {}\n", name, n);
+  if (world.find("water"))
+    fmt::print("  speed of sound {:.4g} m/s: {}\n", scene.sound.value, scene.sound.because);
+  if (options.explain) print_plan(j);
+  fmt::print("the deck is sound\n");
+  return 0;
+}
+
+}  // namespace
+
+int check_command(const CheckOptions& options) {
+  const Model model = read_deck(options.deck, options.set);
+  return model.dimension == 2 ? check<2>(model, options) : check<3>(model, options);
+}
+
+}  // namespace sphgeo

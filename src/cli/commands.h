@@ -1,0 +1,46 @@
+#pragma once
+// The commands of the sphgeo binary. Each returns the exit code of the process.
+
+#include <string>
+#include <vector>
+
+namespace sphgeo {
+
+struct RunOptions {
+  std::string deck;
+  std::string folder;
+  std::vector<std::string> set;
+  int threads = 0;          ///< 0: a sensible number for the scene
+  bool overwrite = false;
+  bool verify = false;      ///< exit 4 when an `expect` is not met
+  bool quiet = false;
+};
+int run_command(const RunOptions& options);
+
+struct CheckOptions {
+  std::string deck;
+  std::vector<std::string> set;
+  bool explain = false;
+  bool json = false;
+};
+int check_command(const CheckOptions& options);
+
+struct BenchOptions {
+  bool json = false;
+  std::vector<std::string> scenes;   ///< empty: all
+  std::vector<long> sizes;           ///< particles; empty: 20 000, 150 000, 1 000 000
+  std::string precision = "both";    ///< single | double | both
+  double seconds = 2;                ///< of measuring per repeat
+  int repeats = 5;
+};
+int bench_command(const BenchOptions& options);
+
+int schema_command();
+
+/// Threads for a scene: as many as the machine has, but no more than one per 2000 particles.
+int sensible_threads(long particles, int asked);
+
+/// The version of this build.
+const char* version();
+
+}  // namespace sphgeo

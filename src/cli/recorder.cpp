@@ -1,0 +1,276 @@
+#include "cli/recorder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "boundaries/boundary.h"
+#include "core/parallel.h"
+#include "geometry/mesh.h"
+#include "output/vtu.h"
+#include "probes/set_sums.h"
+#include "scene/build.h"
+#include "scene/world_view.h"
+
+namespace sphgeo {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// What a frame of a set shows when the deck names no fields.
+std::vector<std::string> usual_fields(const std::string& set) {
+  if (set == "water") return {"velocity", "pressure", "density", "surface", "part"};
+  return {"velocity", "normal", "part"};
+}
+
+std::vector<Column> run_columns() {
+  return {{"advection_steps", "1", "advection steps so far"},
+          {"acoustic_steps", "1", "acoustic steps so far"},
+          {"dt_advection", "s", "last advection step"},
+          {"dt_acoustic", "s", "last acoustic step"},
+          {"particles", "1", "particles that are no walls"},
+          {"lost", "1", "particles that left the domain so far"},
+          {"max_speed", "m/s", "largest speed"},
+          {"min_density", "kg/m3", "smallest density of the water"},
+          {"max_density", "kg/m3", "largest density of the water"},
+          {"mass", "kg", "mass of the water (per metre of depth in 2D)"},
+          {"momentum_x", "kg m/s", "momentum of the water"},
+          {"momentum_y", "kg m/s", "momentum of the water"},
+          {"momentum_z", "kg m/s", "momentum of the water"},
+          {"kinetic", "J", "kinetic energy"},
+          {"potential", "J", "potential energy"},
+          {"internal", "J", "energy of compression"},
+          {"wall_seconds", "s", "wall time since the start"}};
+}
+
+}  // namespace
+
+void Schedule::done(double time) {
+  next_ = (std::floor(time / interval_ + 1e-9) + 1) * interval_;
+}
+
+std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& sets) {
+  const auto present = [&](const std::string& s) { return std::find(sets.begin(), sets.end(), s) != sets.end(); };
+  std::vector<Wish> wishes;
+  for (const auto& p : model.probes)
+    for (const FieldRequest& r : dynamic_cast<const Probe&>(*p).needs())
+      if (present(r.set)) wishes.push_back({r.set, r.field->name, "probe " + p->name});
+  for (const std::string& set : sets)
+    if (set != "walls")
+      for (const std::string& f : model.output.frames.fields.empty() ? usual_fields(set) : model.output.frames.fields)
+        wishes.push_back({set, f, "frames"});
+  if (present("water")) wishes.push_back({"water", "pressure", "run.csv"});
+  return wishes;
+}
+
+template <int Dim>
+Recorder<Dim>::Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder)
+    : world_(world), plan_(plan), folder_(folder), frames_(world.model().frame_interval()),
+      rows_(world.model().run_interval()), run_("run", run_columns()) {
+  const Model& model = world.model();
+  run_.write_to(folder.run_csv());
+  for (const auto& spec : model.probes) {
+    auto probe = std::dynamic_pointer_cast<const Probe>(spec);
+    auto series = std::make_unique<Series>(spec->name, probe->columns(model));
+    series->write_to(folder.probe_csv(spec->name));
+    probes_.push_back({std::move(probe), Schedule(model.probe_interval(*spec)), std::move(series)});
+  }
+  for (const auto& set : world.sets())
+    if (set->phase() != "wall") pvd_.try_emplace(set->name(), folder.pvd(set->name()));
+  if (!model.boundaries.empty()) pvd_.try_emplace("boundaries", folder.pvd("boundaries"));
+}
+
+template <int Dim>
+void Recorder<Dim>::observe(double wall_seconds, bool last) {
+  const double t = world_.clock.time;
+  const bool frame = last || frames_.due(t), row = last || rows_.due(t);
+  const auto due = [&](const ProbeRun& p) { return last || p.schedule.due(t); };
+  if (!frame && !row && std::none_of(probes_.begin(), probes_.end(), due)) return;
+  plan_.run(Stage::observe);
+
+  auto start = std::chrono::steady_clock::now();
+  for (ProbeRun& p : probes_)
+    if (due(p)) sample_probe(p);
+  if (row) {
+    sample_run(wall_seconds);
+    rows_.done(t);
+  }
+  seconds_probes_ += seconds_since(start);
+  ++calls_probes_;
+  if (!frame) return;
+  write_frame();
+  frames_.done(t);
+}
+
+template <int Dim>
+void Recorder<Dim>::sample_probe(ProbeRun& p) {
+  std::vector<std::optional<double>> values(p.series->columns().size());
+  const WorldView<Dim> view(world_);
+  p.probe->sample(view, values);
+  p.series->add(world_.clock.time, std::span<const std::optional<double>>(values));
+  p.schedule.done(world_.clock.time);
+}
+
+template <int Dim>
+typename Recorder<Dim>::Totals Recorder<Dim>::totals() const {
+  Totals sum;
+  sum.time = world_.clock.time;
+  const ParticleSet<Dim>* water = world_.find("water");
+  if (!water) return sum;
+  const auto& m = water->scalar(fields::mass);
+  const auto& rho = water->scalar(fields::density);
+  const auto& v = water->vector(fields::velocity);
+  const Index n = water->size();
+  const Energies e = water_energies(WorldView<Dim>(world_));
+  sum.kinetic = e.kinetic;
+  sum.potential = e.potential;
+  sum.internal = e.internal;
+  sum.mass = ordered_sum(n, [&](Index i) { return m[i]; });
+  sum.momentum = to_space<Dim>(ordered_sum(n, [&](Index i) -> Vec<Dim> { return m[i] * v[i]; }));
+  sum.max_speed = std::sqrt(block_max(n, [&](Index i) { return v[i].squaredNorm(); }, 0.0));
+  sum.min_density = block_min(n, [&](Index i) { return rho[i]; });
+  sum.max_density = block_max(n, [&](Index i) { return rho[i]; });
+  return sum;
+}
+
+template <int Dim>
+void Recorder<Dim>::sample_run(double wall_seconds) {
+  const Totals t = totals();
+  if (!first_) first_ = t;
+  latest_ = t;
+  Index particles = 0, lost = 0;
+  for (const auto& set : world_.sets())
+    if (set->phase() != "wall") particles += set->size();
+  for (const auto& [name, count] : world_.lost()) lost += count;
+  const Clock& c = world_.clock;
+  const double row[] = {static_cast<double>(c.advection_steps), static_cast<double>(c.acoustic_steps),
+                        c.dt_advection, c.dt_acoustic, static_cast<double>(particles), static_cast<double>(lost),
+                        t.max_speed, t.min_density, t.max_density, t.mass, t.momentum.x(), t.momentum.y(),
+                        t.momentum.z(), t.kinetic, t.potential, t.internal, wall_seconds};
+  run_.add(c.time, row);
+}
+
+template <int Dim>
+void Recorder<Dim>::write_frame() {
+  const auto start = std::chrono::steady_clock::now();
+  for (const auto& set : world_.sets())
+    if (set->phase() != "wall") write_set(*set);
+  if (!world_.model().boundaries.empty()) write_boundaries();
+  ++frame_;
+  ++calls_frames_;
+  seconds_frames_ += seconds_since(start);
+}
+
+template <int Dim>
+std::vector<std::string> Recorder<Dim>::frame_fields(const ParticleSet<Dim>& set) const {
+  const auto& asked = world_.model().output.frames.fields;
+  return asked.empty() ? usual_fields(set.name()) : asked;
+}
+
+template <int Dim>
+void Recorder<Dim>::write_set(const ParticleSet<Dim>& set) {
+  const auto& x = set.vector(fields::position);
+  std::vector<VtuField> columns;
+  std::vector<std::vector<double>> vectors;  // three components each, kept until the file is written
+  vectors.reserve(set.fields().size());
+  const Id* ids = set.ids().data();
+  const auto n = static_cast<std::size_t>(set.size());
+  columns.push_back({"id", "", 1, std::span<const std::uint64_t>(ids, n)});
+  for (const std::string& name : frame_fields(set)) {
+    const auto it = set.fields().find(name);
+    if (it == set.fields().end() || name == "id" || name == "position") continue;
+    const FieldSpec& spec = it->second->spec();
+    if (spec.type == FieldType::scalar)
+      columns.push_back({name, spec.unit.symbol, 1, std::span<const double>(set.scalar(spec).data(), n)});
+    else if (spec.type == FieldType::tag)
+      columns.push_back({name, "", 1, std::span<const std::int32_t>(set.tag(spec).data(), n)});
+    else if (spec.type == FieldType::vector) {
+      auto& flat = vectors.emplace_back();
+      flat.reserve(3 * n);
+      const auto& values = set.vector(spec);
+      for (Index i = 0; i < set.size(); ++i) {
+        const Vec3 v = to_space<Dim>(values[i]);
+        flat.insert(flat.end(), v.data(), v.data() + 3);
+      }
+      columns.push_back({name, spec.unit.symbol, 3, std::span<const double>(flat)});
+    }
+  }
+  VtuOptions options;
+  options.time = world_.clock.time;
+  options.precision = world_.model().output.frames.precision == "float64" ? VtuPrecision::float64 : VtuPrecision::float32;
+  write_vtu(folder_.frame(set.name(), frame_), VtuPoints(set.size(), [&](Index i) { return to_space<Dim>(x[i]); }), columns, options);
+  pvd_.at(set.name()).add(world_.clock.time, RunFolder::frame_name(set.name(), frame_));
+}
+
+template <int Dim>
+void Recorder<Dim>::write_boundaries() {
+  const Model& model = world_.model();
+  const bool moves = std::any_of(model.boundaries.begin(), model.boundaries.end(), [](const auto& b) {
+    return dynamic_cast<const WallBoundary&>(*b).motion.has_value();
+  });
+  const Index number = moves ? frame_ : 0;  // walls at rest are written once and listed at every time
+  if (number == frame_) {
+    const Placement placement{model.resolution, support_radius(model), Dim};
+    const double t = world_.clock.time;
+    std::vector<Vec3> points;
+    std::vector<Index> corners;
+    std::vector<std::int32_t> part;
+    for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
+      const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
+      const auto solid = wall.solid(placement);
+      if (!solid) continue;
+      const SurfaceMesh mesh = surface_mesh(*solid, 2 * model.resolution, Dim);
+      const auto first = static_cast<Index>(points.size());
+      for (const Vec3& p : mesh.points) points.push_back(wall.motion ? wall.motion->position(p, t) : p);
+      const auto add = [&](const auto& cells) {
+        for (const auto& cell : cells) {
+          for (const std::int32_t c : cell) corners.push_back(first + c);
+          part.push_back(static_cast<std::int32_t>(b));
+        }
+      };
+      if constexpr (Dim == 2) add(mesh.segments);
+      else add(mesh.triangles);
+    }
+    VtuOptions options;
+    options.time = t;
+    write_vtu_mesh(folder_.frame("boundaries", number), points, Dim, corners, {},
+                   {{"part", "", 1, std::span<const std::int32_t>(part)}}, options);
+  }
+  pvd_.at("boundaries").add(world_.clock.time, RunFolder::frame_name("boundaries", number));
+}
+
+template <int Dim>
+const Series* Recorder<Dim>::series(const std::string& probe) const {
+  if (probe == "run") return &run_;
+  for (const ProbeRun& p : probes_)
+    if (p.series->name() == probe) return p.series.get();
+  return nullptr;
+}
+
+template <int Dim>
+std::vector<TimeRow> Recorder<Dim>::time_rows() const {
+  return {{"probes", calls_probes_, seconds_probes_, 0}, {"frames", calls_frames_, seconds_frames_, 0}};
+}
+
+template <int Dim>
+std::vector<LedgerRow> Recorder<Dim>::ledger() const {
+  if (!first_ || !latest_) return {};
+  const Totals &a = *first_, &b = *latest_;
+  const double speed = std::max({a.max_speed, b.max_speed, 1e-300});
+  const auto relative = [](double difference, double scale) { return scale > 0 ? std::abs(difference) / scale : 0.0; };
+  const double energy_a = a.kinetic + a.potential + a.internal, energy_b = b.kinetic + b.potential + b.internal;
+  const double energy_scale = std::max({std::abs(energy_a), a.kinetic, b.kinetic});
+  const auto list = [](const Vec3& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
+  return {{"mass", "kg", {a.mass}, {b.mass}, {}, relative(b.mass - a.mass, a.mass)},
+          {"momentum", "kg m/s", list(a.momentum), list(b.momentum), {}, relative((b.momentum - a.momentum).norm(), a.mass * speed)},
+          {"energy", "J", {energy_a}, {energy_b}, {}, relative(energy_b - energy_a, energy_scale)}};
+}
+
+template class Recorder<2>;
+template class Recorder<3>;
+
+}  // namespace sphgeo

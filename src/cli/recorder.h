@@ -1,0 +1,89 @@
+#pragma once
+// Everything a run writes while it goes on: probe series, frames, run.csv. It only looks.
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "output/pvd.h"
+#include "output/run_folder.h"
+#include "output/series.h"
+#include "output/summary.h"
+#include "plan/plan.h"
+#include "probes/probe.h"
+
+namespace sphgeo {
+
+/// Fields that the deck's probes and frames ask for, by who asks.
+std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& sets);
+
+/// Times at which something is due: every multiple of an interval, taken at the first safe point past it.
+class Schedule {
+ public:
+  explicit Schedule(double interval) : interval_(interval) {}
+  bool due(double time) const { return time >= next_ - 1e-12 * interval_; }
+  /// Moves on to the first multiple after `time`.
+  void done(double time);
+
+ private:
+  double interval_;
+  double next_ = 0;
+};
+
+template <int Dim>
+class Recorder {
+ public:
+  /// Opens all files. Throws IoError.
+  Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder);
+
+  /// At a safe point: samples whatever is due; `last` takes a row of everything.
+  void observe(double wall_seconds, bool last);
+  /// Writes a frame of the state at hand, whatever the schedule says (post-mortem).
+  void write_frame();
+
+  const Series* series(const std::string& probe) const;
+  const Index& frames_written() const { return frame_; }
+  /// Rows for the time table.
+  std::vector<TimeRow> time_rows() const;
+  /// Mass, momentum and energy at the start and at the latest row of run.csv.
+  std::vector<LedgerRow> ledger() const;
+
+ private:
+  struct ProbeRun {
+    std::shared_ptr<const Probe> probe;
+    Schedule schedule;
+    std::unique_ptr<Series> series;
+  };
+  struct Totals {
+    double time = 0;
+    double mass = 0, kinetic = 0, potential = 0, internal = 0;
+    Vec3 momentum = Vec3::Zero();
+    double max_speed = 0, min_density = 0, max_density = 0;
+  };
+
+  void sample_probe(ProbeRun& p);
+  void sample_run(double wall_seconds);
+  Totals totals() const;
+  void write_set(const ParticleSet<Dim>& set);
+  void write_boundaries();
+  std::vector<std::string> frame_fields(const ParticleSet<Dim>& set) const;
+
+  World<Dim>& world_;
+  Plan<Dim>& plan_;
+  RunFolder folder_;
+  std::vector<ProbeRun> probes_;
+  Schedule frames_, rows_;
+  std::map<std::string, PvdFile> pvd_;
+  Series run_;
+  Index frame_ = 0;
+  std::optional<Totals> first_, latest_;
+  double seconds_probes_ = 0, seconds_frames_ = 0;
+  long calls_probes_ = 0, calls_frames_ = 0;
+};
+
+extern template class Recorder<2>;
+extern template class Recorder<3>;
+
+}  // namespace sphgeo

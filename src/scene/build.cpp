@@ -1,0 +1,193 @@
+#include "scene/build.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "geometry/fill.h"
+#include "geometry/relax_fill.h"
+#include "materials/water.h"
+
+namespace sphgeo {
+
+double water_smoothing_length(const Model& model) {
+  return model.numerics.h_factor_water.value_or(1.8) * model.resolution;
+}
+
+double support_radius(const Model& model) { return 2 * water_smoothing_length(model); }
+
+namespace {
+
+/// The particles of one body before they join their set.
+struct Filling {
+  std::vector<Vec3> at;
+  double volume;  ///< of one particle
+};
+
+Filling fill_body(const Body& body, const Model& model) {
+  const double dp = model.resolution;
+  if (body.filling == "relaxed") {
+    RelaxFillResult relaxed = relax_fill(*body.shape, dp, model.dimension);
+    return {std::move(relaxed.positions), relaxed.particle_volume};
+  }
+  return {fill_lattice(*body.shape, dp, model.dimension), std::pow(dp, model.dimension)};
+}
+
+const Water* find_water(const Model& model) {
+  for (const auto& m : model.materials)
+    if (const auto* w = dynamic_cast<const Water*>(m.get())) return w;
+  return nullptr;
+}
+
+/// Pressure at t = 0, Pa.
+double initial_pressure(const Body& body, const Model& model, double density, const Vec3& at) {
+  if (body.pressure.word == "zero") return 0;
+  if (body.pressure.word == "hydrostatic") {
+    const double level = body.level.value_or(body.shape->box().hi.z());
+    return std::max(0.0, -density * model.gravity.z() * (level - at.z()));
+  }
+  return body.pressure.formula(at, 0);
+}
+
+template <int Dim>
+void add_water(Scene<Dim>& scene, const Model& model, Diagnostics& found) {
+  const Water* water = find_water(model);
+  if (!water) return;
+  ParticleSet<Dim>& set = scene.world->add_set("water", "water", model.resolution, water_smoothing_length(model), true);
+  set.set_constant("density", water->density);
+  set.set_constant("viscosity", water->viscosity);
+  set.set_constant("sound_speed", scene.sound.value);
+  for (const FieldSpec* f : {&fields::mass, &fields::density, &fields::density_rate}) set.require(*f);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    const MaterialSpec* material = model.material(body.material);
+    if (!material || material->phase() != "water") continue;
+    const Filling filling = fill_body(body, model);
+    const std::string path = fmt::format("bodies[{}]", b);
+    if (filling.at.empty())
+      found.error("E110", model.place_of(path + ".shape"), path + ".shape", "the body holds no particle",
+                  fmt::format("it is smaller than the resolution of {} m, or lies outside the plane of a 2D scene", model.resolution));
+    const Index first = set.size();
+    set.resize(first + static_cast<Index>(filling.at.size()));
+    scene.body_particles.emplace_back(body.name, static_cast<Index>(filling.at.size()));
+    const double mass = water->density * filling.volume, c2 = scene.sound.value * scene.sound.value;
+    auto& x = set.vector(fields::position);
+    auto& v = set.vector(fields::velocity);
+    parallel_for(static_cast<Index>(filling.at.size()), [&](Index k) {
+      const Vec3& at = filling.at[static_cast<std::size_t>(k)];
+      const Index i = first + k;
+      set.ids()[i] = static_cast<Id>(i);
+      set.tag(fields::part)[i] = static_cast<std::int32_t>(b);
+      x[i] = to_scene<Dim>(at);
+      v[i] = to_scene<Dim>(Vec3(body.velocity[0](at, 0), body.velocity[1](at, 0), body.velocity[2](at, 0)));
+      set.scalar(fields::mass)[i] = mass;
+      set.scalar(fields::density)[i] = water->density + initial_pressure(body, model, water->density, at) / c2;
+    });
+    for (Index i = first; i < set.size(); ++i)
+      if (!v[i].allFinite() || !std::isfinite(set.scalar(fields::density)[i])) {
+        const Vec3 at = to_space<Dim>(x[i]);
+        found.error("E111", model.place_of(path), path, fmt::format("the initial velocity or pressure is not a number at ({:.4g}, {:.4g}, {:.4g})", at.x(), at.y(), at.z()),
+                    "check the formulas there");
+        break;
+      }
+  }
+}
+
+template <int Dim>
+void add_walls(Scene<Dim>& scene, const Model& model) {
+  if (model.boundaries.empty()) return;
+  bool moves = false;
+  for (const auto& b : model.boundaries) {
+    const auto& wall = dynamic_cast<const WallBoundary&>(*b);
+    moves = moves || wall.motion.has_value();
+  }
+  const double dp = model.resolution;
+  ParticleSet<Dim>& set = scene.world->add_set("walls", "wall", dp, water_smoothing_length(model), moves);
+  for (const FieldSpec* f : {&fields::acceleration, &fields::normal, &fields::reference_position, &fields::reference_normal, &fields::no_slip})
+    set.require(*f);
+  const Placement placement{dp, support_radius(model), Dim};
+  for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
+    const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
+    const std::vector<WallPoint> points = wall.points(placement);
+    const Index first = set.size();
+    set.resize(first + static_cast<Index>(points.size()));
+    scene.boundary_particles.emplace_back(wall.name, static_cast<Index>(points.size()));
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const Index i = first + static_cast<Index>(k);
+      set.ids()[i] = static_cast<Id>(i);
+      set.tag(fields::part)[i] = static_cast<std::int32_t>(b);
+      set.vector(fields::reference_position)[i] = to_scene<Dim>(points[k].position);
+      set.vector(fields::reference_normal)[i] = to_scene<Dim>(points[k].normal);
+      set.vector(fields::position)[i] = to_scene<Dim>(wall.motion ? wall.motion->position(points[k].position, 0) : points[k].position);
+      set.vector(fields::normal)[i] = to_scene<Dim>(wall.motion ? wall.motion->direction(points[k].normal, 0) : points[k].normal);
+      set.scalar(fields::no_slip)[i] = wall.slip_kind() == Slip::no_slip ? 1.0 : 0.0;
+    }
+  }
+}
+
+/// Box of all bodies of the deck that are bounded, and of the walls' particles.
+template <int Dim>
+Aabb particles_box(const World<Dim>& world) {
+  Aabb box;
+  for (const auto& s : world.sets()) {
+    const auto& x = s->vector(fields::position);
+    for (Index i = 0; i < s->size(); ++i) box.extend(to_space<Dim>(x[i]));
+  }
+  return box;
+}
+
+template <int Dim>
+void set_domain(World<Dim>& world, const Model& model) {
+  Aabb box = particles_box(world);
+  if (box.empty()) box = {Vec3::Zero(), Vec3::Zero()};
+  // What leaves this box is lost: as much room on every side as the scene is large.
+  const double room = std::max((box.hi - box.lo).maxCoeff(), 10 * model.resolution);
+  box = box.grown(room);
+  if (model.numerics.domain_min) box.lo = *model.numerics.domain_min;
+  if (model.numerics.domain_max) box.hi = *model.numerics.domain_max;
+  world.set_domain(to_scene<Dim>(box.lo), to_scene<Dim>(box.hi));
+}
+
+Aabb water_box(const Model& model) {
+  Aabb box;
+  for (const Body& b : model.bodies)
+    if (const MaterialSpec* m = model.material(b.material); m && m->phase() == "water" && b.shape) box.extend(b.shape->box());
+  return box;
+}
+
+Aabb scene_box(const Model& model) {
+  Aabb box = water_box(model);
+  const Placement placement{model.resolution, support_radius(model), model.dimension};
+  for (const auto& b : model.boundaries) {
+    const auto* wall = dynamic_cast<const WallBoundary*>(b.get());
+    const auto solid = wall ? wall->solid(placement) : nullptr;
+    if (solid && solid->box().lo.allFinite()) box.extend(solid->box().lo + Vec3::Constant(placement.thickness));
+  }
+  return box;
+}
+
+}  // namespace
+
+template <int Dim>
+Scene<Dim> build_scene(const Model& model, Diagnostics& found) {
+  Scene<Dim> scene;
+  scene.world = std::make_unique<World<Dim>>(model);
+  scene.sound = water_sound_speed(model, water_box(model), scene_box(model));
+  if (find_water(model) && !(scene.sound.value > 0)) {
+    found.error("E112", model.place_of("materials"), "materials", "no speed of sound can be estimated: " + scene.sound.because,
+                "give max_speed or sound_speed of the water");
+    scene.sound.value = 1;
+  }
+  add_water(scene, model, found);
+  add_walls(scene, model);
+  set_domain(*scene.world, model);
+  return scene;
+}
+
+template Scene<2> build_scene<2>(const Model&, Diagnostics&);
+template Scene<3> build_scene<3>(const Model&, Diagnostics&);
+
+}  // namespace sphgeo

@@ -1,0 +1,47 @@
+#pragma once
+// From the model to particles.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "boundaries/boundary.h"
+#include "core/diagnostic.h"
+#include "sph/world.h"
+
+namespace sphgeo {
+
+/// How the speed of sound was found, for `check`.
+struct SoundSpeed {
+  double value;         ///< c0, m/s
+  double max_speed;     ///< the speed it rests on, m/s
+  std::string because;  ///< one sentence
+};
+
+/// A world and what was noticed while building it.
+template <int Dim>
+struct Scene {
+  std::unique_ptr<World<Dim>> world;
+  std::vector<std::pair<std::string, Index>> body_particles;      ///< by body of the deck
+  std::vector<std::pair<std::string, Index>> boundary_particles;  ///< by boundary of the deck
+  SoundSpeed sound{0, 0, ""};
+};
+
+/// Fills bodies, places boundaries, sets the initial state. Findings about the deck that need
+/// particles go to `found`; the model must outlive the world.
+template <int Dim>
+Scene<Dim> build_scene(const Model& model, Diagnostics& found);
+
+/// c0 of the water: from the deck, or ten times the largest speed to be expected (below Eq. 26).
+SoundSpeed water_sound_speed(const Model& model, const Aabb& water, const Aabb& everything);
+
+/// How deep walls and other supports must be, m.
+double support_radius(const Model& model);
+
+/// Spacing of the water kernel, m.
+double water_smoothing_length(const Model& model);
+
+extern template Scene<2> build_scene<2>(const Model&, Diagnostics&);
+extern template Scene<3> build_scene<3>(const Model&, Diagnostics&);
+
+}  // namespace sphgeo

@@ -1,0 +1,157 @@
+#include "scene/cross_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "core/text.h"
+#include "probes/probe.h"
+
+namespace sphgeo {
+namespace {
+
+std::string point_text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z()); }
+
+// A body's particle inside another body's shape, deeper than a quarter of the spacing.
+template <int Dim>
+void check_bodies_overlap(const World<Dim>& world, Diagnostics& found) {
+  const Model& model = world.model();
+  const ParticleSet<Dim>* water = world.find("water");
+  if (!water || model.bodies.size() < 2) return;
+  const auto& x = water->vector(fields::position);
+  const auto& part = water->tag(fields::part);
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Aabb box = model.bodies[b].shape->box();
+    std::vector<Index> inside(model.bodies.size(), 0);
+    Vec3 example = Vec3::Zero();
+    for (Index i = 0; i < water->size(); ++i) {
+      const auto other = static_cast<std::size_t>(part[i]);
+      const Vec3 at = to_space<Dim>(x[i]);
+      if (other >= b || !box.contains(at)) continue;
+      if (model.bodies[b].shape->signed_distance(at) > -0.25 * model.resolution) continue;
+      if (inside[other]++ == 0) example = at;
+    }
+    for (std::size_t other = 0; other < b; ++other)
+      if (inside[other] > 0) {
+        const std::string path = fmt::format("bodies[{}].shape", b);
+        found.error("E120", model.place_of(path), path,
+                    fmt::format("body '{}' overlaps body '{}': {} particles lie in both, one at {}", model.bodies[b].name,
+                                model.bodies[other].name, inside[other], point_text(example)),
+                    "move one of them, or subtract it with a shape of type difference");
+      }
+  }
+}
+
+// Water closer to a wall particle than half a spacing starts with a burst.
+template <int Dim>
+void check_water_in_walls(World<Dim>& world, Diagnostics& found) {
+  const ParticleSet<Dim>*water = world.find("water"), *walls = world.find("walls");
+  if (!water || !walls || walls->size() == 0) return;
+  const Model& model = world.model();
+  CellGrid<Dim> grid;
+  const auto& y = walls->vector(fields::position);
+  const auto frame = FixedPoint<Dim>::fit(world.domain_lo(), world.domain_hi(), support_radius(model));
+  grid.build({y.data(), static_cast<std::size_t>(y.size())}, frame, model.resolution);
+  const auto& x = water->vector(fields::position);
+  struct Clash {
+    Index count = 0, body = -1, wall = -1;
+    Vec3 at = Vec3::Zero();
+  } clash;
+  for (Index i = 0; i < water->size(); ++i) {
+    bool close = false;
+    grid.for_each_in_reach(x[i], 0.45 * model.resolution, [&](Index j, double) {
+      if (clash.count == 0 && !close) clash.wall = walls->tag(fields::part)[j];
+      close = true;
+    });
+    if (close && clash.count++ == 0) {
+      clash.body = water->tag(fields::part)[i];
+      clash.at = to_space<Dim>(x[i]);
+    }
+  }
+  if (clash.count == 0) return;
+  const std::string path = fmt::format("bodies[{}].shape", clash.body);
+  found.error("E121", model.place_of(path), path,
+              fmt::format("body '{}' overlaps boundary '{}': {} of its particles lie in the wall, one at {}",
+                          model.bodies[static_cast<std::size_t>(clash.body)].name,
+                          model.boundaries[static_cast<std::size_t>(clash.wall)]->name, clash.count, point_text(clash.at)),
+              "let the body end at the surface of the wall");
+}
+
+template <int Dim>
+void check_lengths(const World<Dim>& world, Diagnostics& found) {
+  const Model& model = world.model();
+  const double dp = model.resolution;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    if (body.shape->type != "box") continue;
+    const Aabb box = body.shape->box();
+    for (int k = 0; k < 3; ++k) {
+      if (k == 1 && Dim == 2) continue;
+      const double cells = (box.hi[k] - box.lo[k]) / dp;
+      if (std::abs(cells - std::round(cells)) < 1e-6 * cells + 1e-6) continue;
+      const std::string path = fmt::format("bodies[{}].shape", b);
+      found.warning("W122", model.place_of(path), path,
+                    fmt::format("the length of body '{}' along {} is {:.4g} spacings, no whole number", body.name, "xyz"[k], cells),
+                    fmt::format("the body is filled with {} layers there; a resolution of {:.6g} m would fit", std::floor(cells + 0.5),
+                                (box.hi[k] - box.lo[k]) / std::max(1.0, std::round(cells))));
+    }
+  }
+}
+
+template <int Dim>
+void check_probes(const World<Dim>& world, Diagnostics& found) {
+  const Model& model = world.model();
+  Aabb box;
+  for (const auto& s : world.sets()) {
+    const auto& x = s->vector(fields::position);
+    for (Index i = 0; i < s->size(); ++i) box.extend(to_space<Dim>(x[i]));
+  }
+  if (Dim == 2) {
+    box.lo.y() = -INFINITY;
+    box.hi.y() = INFINITY;
+  }
+  for (std::size_t k = 0; k < model.probes.size(); ++k) {
+    const std::string path = fmt::format("probes[{}]", k);
+    const auto& probe = dynamic_cast<const Probe&>(*model.probes[k]);
+    for (const Vec3& at : probe.places())
+      if (!box.grown(model.resolution).contains(at))
+        found.warning("W123", model.place_of(path + ".at"), path + ".at",
+                      fmt::format("probe '{}' at {} lies outside of everything in the scene", probe.name, point_text(at)),
+                      fmt::format("the scene spans x from {:.4g} to {:.4g} m and z from {:.4g} to {:.4g} m", box.lo.x(), box.hi.x(), box.lo.z(), box.hi.z()));
+    for (const FieldRequest& r : probe.needs())
+      if (!world.find(r.set)) {
+        std::vector<std::string> names;
+        for (const auto& s : world.sets()) names.push_back(s->name());
+        found.error("E124", model.place_of(path), path,
+                    fmt::format("probe '{}' needs the particle set '{}', which this scene does not have", probe.name, r.set),
+                    names.empty() ? "" : "there are: " + fmt::format("{}", fmt::join(names, ", ")));
+        break;
+      }
+  }
+}
+
+void check_shapes(const Model& model, Diagnostics& found) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    CheckContext context(found, model.places, fmt::format("bodies[{}].shape", b), model.dimension, model.resolution);
+    model.bodies[b].shape->inspect(context);
+  }
+}
+
+}  // namespace
+
+template <int Dim>
+void check_scene(const Scene<Dim>& scene, Diagnostics& found) {
+  World<Dim>& world = *scene.world;
+  check_shapes(world.model(), found);
+  check_bodies_overlap(world, found);
+  check_water_in_walls(world, found);
+  check_lengths(world, found);
+  check_probes(world, found);
+}
+
+template void check_scene<2>(const Scene<2>&, Diagnostics&);
+template void check_scene<3>(const Scene<3>&, Diagnostics&);
+
+}  // namespace sphgeo

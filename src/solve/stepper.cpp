@@ -1,0 +1,62 @@
+#include "solve/stepper.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace sphgeo {
+
+template <int Dim>
+void Stepper<Dim>::run(double end, const std::function<bool()>& at_safe_point) {
+  rearrange();                                           // line 7
+  while (at_safe_point() && world_.clock.time < end) {   // line 9
+    advance();
+    rearrange();                                         // line 28
+  }
+}
+
+template <int Dim>
+void Stepper<Dim>::rearrange() {
+  const auto start = std::chrono::steady_clock::now();
+  world_.rearrange();
+  seconds_rearranging_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  ++rearrangements_;
+  plan_.run(Stage::reinitialize);                        // lines 11, 12
+}
+
+template <int Dim>
+void Stepper<Dim>::advance() {
+  Clock& clock = world_.clock;
+  // Line 10, without the clip to the end of the run: the last step may pass it, so that a run which is
+  // continued later takes the same steps as one that was longer from the start.
+  clock.dt_advection = plan_.limits().advection;
+  const double start = clock.time;
+  for (double left = clock.dt_advection; left > 0;) {    // line 14
+    const double longest = plan_.limits().acoustic;
+    // Line 15, with what is left divided evenly: no sliver of a step at the end.
+    const double steps = std::max(1.0, std::ceil(left / longest - 1e-9));
+    const double dt = left / steps;
+    acoustic_step(dt);                                   // lines 16 to 25
+    left = steps == 1 ? 0 : left - dt;
+    clock.time = left == 0 ? start + clock.dt_advection : clock.time + dt;  // line 26
+  }
+  ++clock.advection_steps;
+}
+
+template <int Dim>
+void Stepper<Dim>::acoustic_step(double dt) {
+  world_.clock.dt_acoustic = dt;
+  plan_.run(Stage::predict);   // Eq. 96
+  plan_.run(Stage::force);     // Eq. 60
+  plan_.run(Stage::kick);      // Eqs. 97, 98
+  plan_.run(Stage::rate);      // Eq. 58
+  plan_.run(Stage::correct);   // Eq. 98
+  ++world_.clock.acoustic_steps;
+  for (const auto& set : world_.sets())
+    if (set->phase() != "wall") particle_updates_ += static_cast<double>(set->size());
+}
+
+template class Stepper<2>;
+template class Stepper<3>;
+
+}  // namespace sphgeo
