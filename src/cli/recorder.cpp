@@ -61,8 +61,8 @@ std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& 
       if (present(r.set)) wishes.push_back({r.set, r.field->name, "probe " + p->name});
   for (const std::string& set : sets)
     if (set != "walls")
-      for (const std::string& f : model.output.frames.fields.empty() ? usual_fields(set) : model.output.frames.fields)
-        wishes.push_back({set, f, "frames"});
+      for (const auto& asked = model.output.frames.fields; const std::string& f : asked.empty() ? usual_fields(set) : asked)
+        wishes.push_back({set, f, "frames", asked.empty()});
   if (present("water")) wishes.push_back({"water", "pressure", "run.csv"});
   return wishes;
 }

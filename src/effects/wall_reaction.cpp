@@ -46,7 +46,7 @@ class WallReaction final : public Effect<Dim> {
   }
 
   void apply(World<Dim>& world) override {
-    const WaterForceOnWall<Dim> pair{WallPair<Dim>(WaterConstants::of(world), water_->smoothing_length())};
+    const WaterForceOnWall<Dim> pair{WallPair<Dim>(WaterConstants::of(world), water_->smoothing_length(), water_->spacing())};
     auto& force = walls_->vector(fields::wall_force);
     const auto& a = water_->vector(fields::acceleration);
     const auto& rho = water_->scalar(fields::density);

@@ -30,6 +30,7 @@ void pack_walls(World<Dim>& world) {
       one[wall_slot::volume] = static_cast<T>(volume);
       one[wall_slot::no_slip] = static_cast<T>(no_slip[i]);
       two[wall_slot::push] = static_cast<T>(std::max(0.0, (a[i] - g).dot(n[i])));
+      two[wall_slot::weight] = static_cast<T>(-g.dot(n[i]));
       for (int k = 0; k < Dim; ++k) {
         one[wall_slot::velocity + k] = static_cast<T>(v[i][k]);
         two[wall_slot::normal + k] = static_cast<T>(n[i][k]);

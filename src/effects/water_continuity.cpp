@@ -9,6 +9,7 @@ template <int Dim>
 struct ContinuityPair {
   Kernel<Dim> kernel;
   double inverse_impedance;  ///< 1 / (rho0 c0)
+  Vec<Dim> weight;           ///< rho0 g
 
   template <class T>
   struct Sums {
@@ -21,8 +22,13 @@ struct ContinuityPair {
     using namespace water_slot;
     const T gradient = kernel.dw_over_r(r2) * j[volume];
     const T dv_r = dot(i.vec(velocity) - j.vec(velocity), r);
-    // 2 (p_i - p_j) / (2 rho0 c0) dW/dr: the Riemann velocity U* instead of the mean one.
-    const T dissipation = (i[pressure] - j[pressure]) * T(inverse_impedance) * length(r2);
+    // 2 (p_i - p_j) / (2 rho0 c0) dW/dr: the Riemann velocity U* instead of the mean one. Both sides of
+    // the Riemann problem are first taken to the middle of the pair with the hydrostatic gradient: the
+    // plain difference of Eq. 58 is not zero in still water, and where the kernel is cut off at the free
+    // surface its sum lifts the surface for ever.
+    T jump = i[pressure] - j[pressure];
+    for (int k = 0; k < Dim; ++k) jump -= T(weight[k]) * r[k];
+    const T dissipation = jump * T(inverse_impedance) * length(r2);
     sum.divergence += (dv_r + dissipation) * gradient;
   }
 };
@@ -32,7 +38,7 @@ template <int Dim>
 class WaterContinuity final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"water_continuity", Stage::rate, "Eq. 58", "divergence and Riemann density dissipation between water particles", false};
+    return {"water_continuity", Stage::rate, "Eq. 58", "divergence and well-balanced Riemann density dissipation between water particles", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
@@ -53,7 +59,8 @@ class WaterContinuity final : public Effect<Dim> {
 
   void apply(World<Dim>& world) override {
     const WaterConstants w = WaterConstants::of(world);
-    const ContinuityPair<Dim> pair{Kernel<Dim>(world.set("water").smoothing_length()), 1 / (w.density * w.sound_speed)};
+    const ContinuityPair<Dim> pair{Kernel<Dim>(world.set("water").smoothing_length()), 1 / (w.density * w.sound_speed),
+                                   w.density * world.gravity()};
     world.with_pair_precision([&](auto number) {
       const auto& records = world.records("water").template get<decltype(number)>();
       gather<ContinuityPair<Dim>::template Sums>(

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "effects/effect.h"
+#include "effects/lattice_sums.h"
 #include "effects/water_phase.h"
 
 namespace sphgeo {
@@ -30,6 +31,29 @@ struct ArrangementPair {
     for (int a = 0; a < Dim; ++a)
       for (int b = a; b < Dim; ++b) sum.moment[a][b] += slope * r[a] * r[b];
   }
+};
+
+/// The free surface around a particle: its share of the kernel and its mean normal.
+template <int Dim>
+struct SurfacePair {
+  Kernel<Dim> kernel;
+
+  template <class T>
+  struct Sums {
+    T share{};
+    LaneVec<Dim, T> normal{};
+  };
+
+  template <class T>
+  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T, 2>& j,
+                  const LaneVec<Dim, T>&, const T& r2) const {
+    const T weight = kernel.w(r2) * j[water_slot::volume];
+    sum.share += weight * j[on_surface];
+    sum.normal += weight * j.vec(surface_normal);
+  }
+  // Slots of the water's second record while this pass runs.
+  static constexpr int surface_normal = 8;
+  static constexpr int on_surface = 12;
 };
 
 template <int Dim>
@@ -84,7 +108,8 @@ class WaterReinitialization final : public Effect<Dim> {
 
   void prepare(World<Dim>& world) override {
     water_ = &world.set("water");
-    lattice_ = lattice_number(water_->spacing(), Kernel<Dim>(water_->smoothing_length()));
+    if (world.model().numerics.transport_velocity) world.records("water", 1);
+    lattice_ = lattice_sums(Kernel<Dim>(water_->smoothing_length()), water_->spacing()).number;
   }
 
   void apply(World<Dim>& world) override {
@@ -96,17 +121,6 @@ class WaterReinitialization final : public Effect<Dim> {
   }
 
  private:
-  // Sum of W dp^Dim over a lattice: what a perfect arrangement gives instead of 1.
-  static double lattice_number(double dp, const Kernel<Dim>& kernel) {
-    const int reach = static_cast<int>(std::ceil(kernel.support() / dp));
-    double sum = 0;
-    for (int i = -reach; i <= reach; ++i)
-      for (int j = -reach; j <= reach; ++j)
-        for (int k = Dim == 3 ? -reach : 0; k <= (Dim == 3 ? reach : 0); ++k)
-          sum += kernel.w(dp * dp * (i * i + j * j + k * k)) * std::pow(dp, Dim);
-    return sum;
-  }
-
   void sum_pairs(World<Dim>& world) {
     const double rho0 = water_->constant("density");
     const auto& m = water_->scalar(fields::mass);
@@ -127,38 +141,71 @@ class WaterReinitialization final : public Effect<Dim> {
     });
   }
 
-  void update(const World<Dim>& world) {
+  void update(World<Dim>& world) {
     const Numerics& n = world.model().numerics;
     const double rho0 = water_->constant("density");
     const double h = water_->smoothing_length();
     const double self = Kernel<Dim>(h).w(0.0);
     const bool summation = n.density_reinitialization == "summation";
-    const double shift = n.transport_velocity ? 2 * n.transport_coefficient * h * h : 0.0;
     auto& rho = water_->scalar(fields::density);
-    auto& x = water_->vector(fields::position);
     auto& surface = water_->tag(fields::surface);
     const auto& m = water_->scalar(fields::mass);
     parallel_for(water_->size(), [&](Index i) {
       const Arrangement<Dim>& s = sums_[static_cast<std::size_t>(i)];
       // The divergence of position is Dim in the bulk; three quarters of it tell the surface.
       surface[i] = -s.moment.trace() < 0.75 * Dim ? 1 : 0;
-      if (summation) {
-        const double summed = rho0 * (s.number + self * m[i] / rho0) / lattice_;
-        // A sum that falls short is a surface or a splash, not a rarefaction: it keeps its density,
-        // up to the factor by which rho exceeds rho0.
-        rho[i] = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
-      }
-      if (shift > 0) x[i] += displacement(s, surface[i] != 0, shift);
+      if (!summation) return;
+      const double summed = rho0 * (s.number + self * m[i] / rho0) / lattice_;
+      // A sum that falls short is a surface or a splash, not a rarefaction: it keeps its density,
+      // up to the factor by which rho exceeds rho0.
+      rho[i] = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
+    });
+    if (n.transport_velocity) shift(world);
+  }
+
+  // Eq. 87 with the sign that leads away from crowded places. Wherever the kernel reaches the free
+  // surface, its truncation looks like a rarefaction: there only the part along the surface is taken.
+  void shift(World<Dim>& world) {
+    using Pair = SurfacePair<Dim>;
+    const double h = water_->smoothing_length();
+    const double factor = 2 * world.model().numerics.transport_coefficient * h * h;
+    auto& x = water_->vector(fields::position);
+    const auto& surface = water_->tag(fields::surface);
+    world.with_pair_precision([&](auto number) {
+      using T = decltype(number);
+      auto& first = world.records("water", 0).template get<T>();
+      auto& second = world.records("water", 1).template get<T>();
+      parallel_for(water_->size(), [&](Index i) {
+        T* slot = second[i] - record_size;
+        const Vec<Dim> normal = surface[i] ? surface_normal(sums_[static_cast<std::size_t>(i)]) : Vec<Dim>::Zero();
+        slot[Pair::on_surface] = static_cast<T>(surface[i]);
+        for (int k = 0; k < Dim; ++k) slot[Pair::surface_normal + k] = static_cast<T>(normal[k]);
+      });
+      gather<Pair::template Sums>(
+          world.list("water", "water"), first, with(first, second), Pair{Kernel<Dim>(h)},
+          [&](Index i, const auto& near) {
+            const Arrangement<Dim>& s = sums_[static_cast<std::size_t>(i)];
+            Vec<Dim> move = -factor * s.gradient;
+            if (surface[i] || near.share > 0) {
+              const double own = surface[i] ? 1.0 : 0.0;  // the list leaves the particle itself out
+              const Vec<Dim> mean = to_vec(near.normal) + (surface[i] ? surface_normal(s) : Vec<Dim>::Zero());
+              // Surfaces that face each other, as of a thin film or a lonely particle, leave no
+              // direction along which anything may move.
+              const double length = mean.norm();
+              if (length < 0.5 * (near.share + own)) return;
+              const Vec<Dim> normal = mean / length;
+              move -= normal.dot(move) * normal;
+            }
+            x[i] += move;
+          });
     });
   }
 
-  // Eq. 87 with the sign that leads away from crowded places; on the surface only along it.
-  static Vec<Dim> displacement(const Arrangement<Dim>& s, bool surface, double factor) {
-    if (!surface) return -factor * s.gradient;
-    const double det = s.moment.determinant();
-    if (std::abs(det) < 1e-3) return Vec<Dim>::Zero();  // a lonely particle has no arrangement
-    const Vec<Dim> normal = (s.moment.inverse() * s.gradient).normalized();
-    return -factor * (s.gradient - normal.dot(s.gradient) * normal);
+  // Outward normal of the free surface at one particle, corrected for the disorder around it; zero
+  // for a particle that has too few neighbors to tell.
+  static Vec<Dim> surface_normal(const Arrangement<Dim>& s) {
+    if (std::abs(s.moment.determinant()) < 1e-3) return Vec<Dim>::Zero();
+    return (s.moment.inverse() * s.gradient).normalized();
   }
 
   bool has_walls_;

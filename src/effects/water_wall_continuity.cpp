@@ -40,7 +40,7 @@ class WaterWallContinuity final : public Effect<Dim> {
   void prepare(World<Dim>& world) override { water_ = &world.set("water"); }
 
   void apply(World<Dim>& world) override {
-    const WallDivergence<Dim> pair{WallPair<Dim>(WaterConstants::of(world), water_->smoothing_length())};
+    const WallDivergence<Dim> pair{WallPair<Dim>(WaterConstants::of(world), water_->smoothing_length(), water_->spacing())};
     const auto& rho = water_->scalar(fields::density);
     auto& rate = water_->scalar(fields::density_rate);
     world.with_pair_precision([&](auto number) {

@@ -45,7 +45,7 @@ class WaterWallForce final : public Effect<Dim> {
 
   void apply(World<Dim>& world) override {
     const WaterConstants w = WaterConstants::of(world);
-    const WallForceOnWater<Dim> pair{WallPair<Dim>(w, water_->smoothing_length())};
+    const WallForceOnWater<Dim> pair{WallPair<Dim>(w, water_->smoothing_length(), water_->spacing())};
     const auto& rho = water_->scalar(fields::density);
     auto& sum_of_forces = water_->vector(fields::acceleration_sum);
     const NeighborList& list = world.list("water", "walls");

@@ -117,7 +117,7 @@ void Plan<Dim>::check_producers(const std::vector<Wish>& wishes) const {
   for (const Wish& w : wishes) {
     ParticleSet<Dim>& set = world_.set(w.set);
     const auto it = set.fields().find(w.field);
-    if (it == set.fields().end())
+    if (it == set.fields().end() && !w.optional)
       throw std::logic_error(fmt::format("plan: {} asks for field '{}' of set '{}', which no effect computes",
                                          w.who, w.field, w.set));
   }

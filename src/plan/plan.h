@@ -14,6 +14,7 @@ namespace sphgeo {
 /// A field that a probe or a frame wants.
 struct Wish {
   std::string set, field, who;
+  bool optional = false;  ///< no error when no effect computes it
 };
 
 /// One active effect with its clockwork.
