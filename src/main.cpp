@@ -1,6 +1,8 @@
 // sphgeo: soil, water, rock and structures with smoothed particle hydrodynamics, from a YAML deck.
 
 #include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 
@@ -13,18 +15,84 @@ namespace {
 
 using namespace sphgeo;
 
-/// Command line errors of CLI11 as one sentence with the nearest valid name; exit code 2.
-int usage_error(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
-  if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-  std::cerr << "error: " << error.what() << "\n";
-  if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-') {
+/// "; did you mean 'run'?", or nothing.
+std::string offer(const std::string& word, const std::vector<std::string>& names) {
+  const std::string near = nearest_name(word, names);
+  return near.empty() ? "" : "; did you mean '" + near + "'?";
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+/// "DECK", "-o DIR": a required option as the user writes it.
+std::string as_written(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  if (option.get_positional()) return type;
+  const std::string flag =
+      option.get_snames().empty() ? option.get_name() : "-" + option.get_snames().front();
+  return flag + " " + type;
+}
+
+/// What is wrong with the command line, as one sentence; the most helpful finding first.
+std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
+  const auto chosen = app.get_subcommands();
+  const std::vector<std::string> own_rest = app.remaining();
+  if (chosen.empty()) {
+    if (own_rest.empty()) return "a command is missing";
+    const std::string& word = own_rest.front();
+    if (word.front() == '-')
+      return "there is no option '" + word + "'" + offer(word, option_names(app));
     std::vector<std::string> names;
     for (const CLI::App* sub : app.get_subcommands(nullptr)) names.push_back(sub->get_name());
-    const std::string near = nearest_name(argv[1], names);
-    if (!near.empty()) std::cerr << "  did you mean '" << near << "'?\n";
+    return "there is no command '" + word + "'" + offer(word, names);
   }
-  std::cerr << "  'sphgeo --help' lists the commands\n";
+  const CLI::App& sub = *chosen.front();
+  const std::string name = "'sphgeo " + sub.get_name() + "'";
+  std::vector<std::string> rest = sub.remaining();
+  rest.insert(rest.end(), own_rest.begin(), own_rest.end());
+  for (const std::string& word : rest)
+    if (word.size() > 1 && word.front() == '-') {
+      const std::string flag = word.substr(0, word.find('='));
+      return name + " has no option '" + flag + "'" + offer(flag, option_names(sub));
+    }
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr)
+    for (const CLI::Option* option : sub.get_options())
+      if (option->get_required() && option->count() == 0)
+        return name + " needs " + as_written(*option) + ", " + option->get_description();
+  if (!rest.empty()) return name + " has no use for '" + rest.front() + "'";
+  return error.what();
+}
+
+int usage_error(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+  const auto chosen = app.get_subcommands();
+  std::cerr << "error: " << complaint(app, error) << "\n";
+  if (chosen.empty())
+    std::cerr << "  'sphgeo --help' lists the commands\n";
+  else
+    std::cerr << "  'sphgeo " << chosen.front()->get_name() << " --help' lists its options\n";
   return static_cast<int>(ExitCode::usage);
+}
+
+/// A number above 0 of type T; the text is what the error calls it.
+template <class T>
+CLI::Validator above_zero(const std::string& what) {
+  return CLI::Validator(
+      [what](const std::string& text) {
+        T value{};
+        const char* end = text.data() + text.size();
+        const auto [stop, problem] = std::from_chars(text.data(), end, value);
+        return problem == std::errc{} && stop == end && value > 0 && value < T(1e9)
+                   ? ""
+                   : "'" + text + "' is not " + what + " above 0";
+      },
+      "", "above zero");
 }
 
 int run_guarded(const std::function<int()>& command) {
@@ -36,26 +104,45 @@ int run_guarded(const std::function<int()>& command) {
   } catch (const Error& e) {
     std::cerr << "error: " << e.what() << "\n";
     return static_cast<int>(e.code());
+  } catch (const std::bad_alloc&) {
+    std::cerr << "error: there is not enough memory for this scene\n";
+    return static_cast<int>(ExitCode::internal);
   } catch (const std::exception& e) {
     std::cerr << "internal error: " << e.what() << "\n";
     return static_cast<int>(ExitCode::internal);
   }
 }
 
+void add_deck(CLI::App* app, std::string& deck, std::vector<std::string>& set) {
+  app->add_option("deck", deck, "the deck to read (- for standard input)")
+      ->required()
+      ->type_name("DECK");
+  app->add_option("--set", set, "change a key: a.b[0].c=value; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"soil, water, rock and structures with smoothed particle hydrodynamics, from a YAML deck"};
+  CLI::App app{
+      "soil, water, rock and structures with smoothed particle hydrodynamics, from a YAML deck",
+      "sphgeo"};
   app.set_version_flag("--version", std::string("sphgeo ") + version());
   app.require_subcommand(1);
+  const auto whole = above_zero<int>("a whole number");
   int code = 0;
 
   RunOptions run;
   CLI::App* run_app = app.add_subcommand("run", "run a deck");
-  run_app->add_option("deck", run.deck, "the deck (- for standard input)")->required();
-  run_app->add_option("-o,--output", run.folder, "folder of the results")->required();
-  run_app->add_option("--set", run.set, "override a key: a.b[0].c=value")->allow_extra_args(false);
-  run_app->add_option("--threads", run.threads, "threads (default: what the scene can use)")->check(CLI::PositiveNumber);
+  add_deck(run_app, run.deck, run.set);
+  run_app->add_option("-o,--output", run.folder, "the folder of the results")
+      ->required()
+      ->type_name("DIR");
+  run_app
+      ->add_option("--threads", run.threads, "number of threads (default: what the scene can use)")
+      ->check(whole)
+      ->type_name("N");
   run_app->add_flag("--overwrite", run.overwrite, "replace the results in the folder");
   run_app->add_flag("--verify", run.verify, "exit with 4 when a result under 'expect' is not met");
   run_app->add_flag("-q,--quiet", run.quiet, "no progress and no time table");
@@ -63,29 +150,57 @@ int main(int argc, char** argv) {
 
   CheckOptions check;
   CLI::App* check_app = app.add_subcommand("check", "check a deck without running it");
-  check_app->add_option("deck", check.deck, "the deck (- for standard input)")->required();
-  check_app->add_option("--set", check.set, "override a key: a.b[0].c=value")->allow_extra_args(false);
-  check_app->add_flag("--explain", check.explain, "print the plan: what runs and why, lists, fields, memory");
+  add_deck(check_app, check.deck, check.set);
+  check_app->add_flag("--explain", check.explain,
+                      "print the plan: what runs and why, lists, fields, memory");
   check_app->add_flag("--json", check.json, "the same as JSON");
   check_app->callback([&] { code = run_guarded([&] { return check_command(check); }); });
+
+  CLI::App* list_app =
+      app.add_subcommand("list", "print the types of materials, shapes, boundaries, probes");
+  list_app->callback([&] { code = run_guarded(list_command); });
+
+  std::string type;
+  CLI::App* show_app = app.add_subcommand("show", "print the keys of a type");
+  show_app->add_option("type", type, "a name that 'sphgeo list' prints")
+      ->required()
+      ->type_name("TYPE");
+  show_app->callback([&] { code = run_guarded([&] { return show_command(type); }); });
 
   CLI::App* schema_app = app.add_subcommand("schema", "print the JSON Schema of decks");
   schema_app->callback([&] { code = run_guarded(schema_command); });
 
   BenchOptions bench;
-  CLI::App* bench_app = app.add_subcommand("bench", "measure the speed of the pair loops on fixed scenes");
+  CLI::App* bench_app =
+      app.add_subcommand("bench", "measure the speed of the pair loops on fixed scenes");
   bench_app->add_flag("--json", bench.json, "print JSON");
-  bench_app->add_option("--scene", bench.scenes, "only these scenes")->allow_extra_args(false);
-  bench_app->add_option("--size", bench.sizes, "particles (default: 20000 150000 1000000)")->check(CLI::PositiveNumber);
-  bench_app->add_option("--precision", bench.precision, "of the pair sums")->check(CLI::IsMember({"single", "double", "both"}));
-  bench_app->add_option("--seconds", bench.seconds, "of measuring in each repeat")->check(CLI::PositiveNumber);
-  bench_app->add_option("--repeats", bench.repeats, "repeats; the best counts")->check(CLI::PositiveNumber);
+  bench_app->add_option("--scene", bench.scenes, "only this scene; may be repeated")
+      ->allow_extra_args(false)
+      ->type_name("NAME");
+  bench_app->add_option("--size", bench.sizes, "particles (default: 20000 150000 1000000)")
+      ->check(whole)
+      ->type_name("N");
+  bench_app->add_option("--precision", bench.precision, "of the pair sums: single, double or both")
+      ->check(CLI::IsMember({"single", "double", "both"}))
+      ->type_name("WORD");
+  bench_app->add_option("--seconds", bench.seconds, "of measuring in each repeat")
+      ->check(above_zero<double>("a number"))
+      ->type_name("S");
+  bench_app->add_option("--repeats", bench.repeats, "repeats; the best counts")
+      ->check(whole)
+      ->type_name("N");
   bench_app->callback([&] { code = run_guarded([&] { return bench_command(bench); }); });
 
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return usage_error(app, e, argc, argv);
+    return usage_error(app, e);
+  }
+  std::cout.flush();
+  if (const bool lost = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
+      (lost || !std::cout) && code == 0) {
+    std::cerr << "error: cannot write to standard output\n";
+    return static_cast<int>(ExitCode::io);
   }
   return code;
 }

@@ -37,6 +37,11 @@ int bench_command(const BenchOptions& options);
 
 int schema_command();
 
+/// Prints the types of the registries and the effects.
+int list_command();
+/// Prints the keys of every type of this name. Throws Error (usage) when there is none.
+int show_command(const std::string& type);
+
 /// Threads for a scene: as many as the machine has, but no more than one per 2000 particles.
 int sensible_threads(long particles, int asked);
 

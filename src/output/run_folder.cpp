@@ -63,8 +63,8 @@ RunFolder::RunFolder(std::string path, ExistingResults existing) : path_(std::mo
     if (!old.empty() && existing == ExistingResults::refuse)
       throw Error(
           ExitCode::usage,
-          fmt::format("{}: the folder holds results ({}{}); continue them with --resume, "
-                      "replace them with --overwrite, or name another folder with -o",
+          fmt::format("{}: the folder holds results ({}{}); replace them with --overwrite, or name "
+                      "another folder with -o",
                       path_, old.back().filename().string(),
                       old.size() > 1 ? fmt::format(" and {} more files", old.size() - 1) : ""));
     for (const fs::path& file : old) {

@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+"""The command line: exit codes, sentences that say what to do, and what goes to which stream.
+
+    test_cli.py SPHGEO
+"""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SPHGEO = None
+DECK = """\
+dimension: 2
+resolution: 0.1 m
+end_time: 1 ms
+materials: [{name: water, type: water, sound_speed: 10}]
+bodies: [{name: drop, material: water, shape: {type: box, min: [0, 0, 0], max: [0.4, 1, 0.4]}}]
+"""
+MISSED = """\
+probes: [{name: energy, type: energy}]
+expect:
+  - {name: wrong, probe: energy.kinetic, reduce: last, reference: 100, tolerance: 1 %}
+"""
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.here = Path(self.folder.name)
+        (self.here / "deck.yaml").write_text(DECK)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def call(self, *words, stdin=""):
+        return subprocess.run([SPHGEO, *words], input=stdin, capture_output=True, text=True, timeout=60,
+                              cwd=self.here, env={**os.environ, "NO_COLOR": "1"})
+
+    def refused(self, code, says, *words, stdin=""):
+        """The call ends with this code, says each of these on stderr, and prints no data."""
+        done = self.call(*words, stdin=stdin)
+        self.assertEqual(done.returncode, code, done.stderr)
+        for text in [says] if isinstance(says, str) else says:
+            self.assertIn(text, done.stderr)
+        self.assertEqual(done.stdout, "")
+        return done.stderr
+
+    def accepted(self, *words, stdin=""):
+        done = self.call(*words, stdin=stdin)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def test_commands(self):
+        self.refused(2, ["a command is missing", "sphgeo --help"])
+        self.refused(2, "no command 'rnu'; did you mean 'run'?", "rnu", "deck.yaml", "-o", "out")
+        self.refused(2, "no command 'deck.yaml'", "deck.yaml")
+        self.refused(2, "no option '--verison'; did you mean '--version'?", "--verison")
+        for words in (["--help"], ["run", "--help"], ["--version"]):
+            self.assertIn("sphgeo", self.accepted(*words).stdout)
+
+    def test_options(self):
+        self.refused(2, "'sphgeo check' has no option '--explian'; did you mean '--explain'?",
+                     "check", "--explian", "deck.yaml")
+        # The misspelt option matters more than what is missing because of it.
+        self.refused(2, "has no option '--ouput'; did you mean '--output'?", "run", "deck.yaml",
+                     "--ouput", "out")
+        self.refused(2, "has no option '--thread'; did you mean '--threads'?", "run", "deck.yaml",
+                     "-o", "out", "--thread=2")
+        self.refused(2, "'sphgeo run' needs -o DIR", "run", "deck.yaml")
+        self.refused(2, "'sphgeo run' needs DECK", "run", "-o", "out")
+        self.refused(2, "'sphgeo check' needs DECK", "check")
+        self.refused(2, "no use for 'more.yaml'", "check", "deck.yaml", "more.yaml")
+        self.refused(2, "--set", "check", "deck.yaml", "--set")
+        for wrong in ("0", "-1", "two", "2.5", "1e400", "99999999999999999999"):
+            self.refused(2, f"'{wrong}' is not a whole number above 0", "run", "deck.yaml", "-o", "out",
+                         f"--threads={wrong}")
+        self.refused(2, "no bench scene 'dam_brek'; did you mean 'dam_break'?", "bench", "--scene",
+                     "dam_brek")
+        self.assertFalse((self.here / "out").exists())
+
+    def test_decks_that_cannot_be_read(self):
+        self.refused(2, ["none.yaml", "No such file"], "check", "none.yaml")
+        self.refused(2, "it is a folder", "check", ".")
+        self.refused(2, "the deck is empty", "check", "-")
+        (self.here / "binary.yaml").write_bytes(bytes(range(256)) * 64)
+        self.refused(2, "binary.yaml", "check", "binary.yaml")
+        if os.geteuid() != 0:
+            (self.here / "locked.yaml").write_text(DECK)
+            (self.here / "locked.yaml").chmod(0)
+            self.refused(2, "Permission denied", "check", "locked.yaml")
+        for command in (["check", "none.yaml"], ["run", "none.yaml", "-o", "out"]):
+            self.assertEqual(len(self.refused(2, "none.yaml", *command).splitlines()), 1)
+
+    def test_mistakes_of_a_deck(self):
+        (self.here / "bad.yaml").write_text(DECK.replace("resolution", "resolutoin"))
+        for command in (["check", "bad.yaml"], ["run", "bad.yaml", "-o", "out"]):
+            self.refused(2, ["bad.yaml:2:1: error", "did you mean 'resolution'?"], *command)
+        self.refused(2, "did you mean 'resolution'?", "check", "deck.yaml", "--set", "resolutoin=1")
+        self.assertFalse((self.here / "out").exists())
+
+    def test_standard_input(self):
+        self.accepted("check", "-", stdin=DECK)
+        self.refused(2, "<stdin>:1:", "check", "-", stdin="dimension: 4\n" + DECK.split("\n", 1)[1])
+
+    def test_run_folders(self):
+        run = ["run", "deck.yaml", "-q", "-o"]
+        (self.here / "notes").mkdir()
+        (self.here / "notes" / "mine.txt").write_text("kept")
+        self.accepted(*run, "notes")   # a folder with other files is no obstacle
+        stamp = (self.here / "notes" / "resolved.yaml").read_text()
+        said = self.refused(2, ["holds results", "--overwrite"], *run, "notes")
+        self.assertNotIn("--resume", said)   # no such option yet
+        self.accepted(*run, "notes", "--overwrite", "--set", "end_time=2 ms")
+        self.assertNotEqual((self.here / "notes" / "resolved.yaml").read_text(), stamp)
+        self.assertEqual((self.here / "notes" / "mine.txt").read_text(), "kept")
+        self.accepted(*run, "deep/er/run")
+        self.refused(5, "deck.yaml", *run, "deck.yaml")
+        self.refused(5, "deck.yaml/below", *run, "deck.yaml/below")
+
+    def test_streams(self):
+        done = self.accepted("run", "deck.yaml", "-o", "out", "--threads", "2")
+        self.assertEqual(done.stdout, "")
+        self.assertNotIn("\033", done.stderr)
+        summary = json.loads((self.here / "out" / "summary.json").read_text())
+        self.assertEqual((summary["status"], summary["threads"]), ("done", 2))
+        quiet = self.accepted("run", "deck.yaml", "-o", "quiet", "--quiet")
+        self.assertEqual((quiet.stdout, quiet.stderr), ("", ""))
+
+    def test_verify(self):
+        (self.here / "missed.yaml").write_text(DECK + MISSED)
+        done = self.accepted("run", "missed.yaml", "-q", "-o", "a")
+        self.assertIn("wrong", done.stdout)
+        done = self.call("run", "missed.yaml", "-q", "-o", "b", "--verify")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertEqual(json.loads((self.here / "b" / "summary.json").read_text())["exit_code"], 4)
+
+    def test_plan_as_data(self):
+        plan = json.loads(self.accepted("check", "deck.yaml", "--explain", "--json").stdout)
+        self.assertIn("water_momentum", [e["name"] for e in plan["plan"]])
+        self.assertIn("water_momentum", self.accepted("check", "deck.yaml", "--explain").stdout)
+
+    def test_list_and_show(self):
+        listed = self.accepted("list").stdout
+        for name in ("box", "water", "tank", "pressure", "water_momentum"):
+            self.assertRegex(listed, rf"(?m)^  {name} ")
+            if name != "water_momentum":
+                self.assertIn(f"{name} (", self.accepted("show", name).stdout)
+        shown = self.accepted("show", "tank").stdout
+        for key in ("name", "min", "max", "open", "slip"):
+            self.assertRegex(shown, rf"(?m)^  {key}$")
+        self.refused(2, "no type 'bxo'; did you mean 'box'?", "show", "bxo")
+        self.refused(2, "'sphgeo list'", "show", "no_such_thing_at_all")
+
+    def test_a_full_disk_is_said(self):
+        if not Path("/dev/full").exists():
+            self.skipTest("no /dev/full")
+        for command in ("schema", "list"):
+            with open("/dev/full", "w") as full:
+                done = subprocess.run([SPHGEO, command], stdout=full, stderr=subprocess.PIPE, text=True)
+            self.assertEqual(done.returncode, 5, command)
+            self.assertIn("standard output", done.stderr)
+
+
+if __name__ == "__main__":
+    SPHGEO = str(Path(sys.argv.pop(1)).resolve())
+    unittest.main(verbosity=0)
