@@ -1,0 +1,76 @@
+// Which effects, fields and lists a scene gets: pinned, so that a change of the physics is a change
+// of these files too. To write them anew: SPHGEO_UPDATE_PLANS=1 sphgeo_tests -ts=explain
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "cli/recorder.h"
+#include "plan/fake_effects.h"
+#include "support/rig.h"
+
+using namespace sphgeo;
+using test::Rig;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+const std::string head = "resolution: 0.05\nend_time: 1\nmaterials: [{name: water, type: water}]\n";
+const std::string pool = "bodies: [{name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [0.4, 0.2, 0.3]}}]\n";
+const std::string tank = "boundaries: [{name: tank, type: tank, min: [0, 0, 0], max: [0.4, 0.2, 0.4], open: [top]}]\n";
+const std::string gates =
+    "boundaries:\n"
+    "  - {name: tank, type: tank, min: [0, 0, 0], max: [0.4, 0.2, 0.4], open: [top, right]}\n"
+    "  - {name: gate, type: wall, shape: {type: box, min: [0.4, 0, 0], max: [0.6, 0.2, 0.5]}, motion: {displacement: [0, 0, t]}}\n";
+const std::string probes =
+    "probes:\n"
+    "  - {name: push, type: force, boundary: tank}\n"
+    "  - {name: level, type: water_level, at: [0.2, 0.1, 0]}\n";
+
+template <int Dim>
+Json plan_of(const std::string& deck) {
+  Rig<Dim> rig("dimension: " + std::to_string(Dim) + "\n" + deck);
+  std::vector<std::string> sets;
+  for (const auto& s : rig.world.sets()) sets.push_back(s->name());
+  rig.plan_it(wishes_of(rig.model, sets));
+  Json j;
+  for (const auto& e : rig.plan->effects())
+    j["plan"].push_back({{"stage", stage_name(e.info.stage)}, {"name", e.info.name}});
+  j["unused"] = Json::array();
+  for (const auto& u : rig.plan->unused())
+    if (u.name.rfind(test::fake_prefix, 0) != 0) j["unused"].push_back(u.name);
+  for (const auto& [key, list] : rig.world.lists()) j["lists"].push_back(key.first + " -> " + key.second);
+  for (const auto& set : rig.world.sets()) {
+    Json names = Json::array();
+    for (const auto& [name, field] : set->fields()) names.push_back(name);
+    j["fields"][set->name()] = names;
+  }
+  return j;
+}
+
+void compare(const std::string& name, const Json& plan) {
+  const std::string path = std::string(SPHGEO_SOURCE_DIR) + "/tests/explain/" + name + ".json";
+  if (std::getenv("SPHGEO_UPDATE_PLANS")) {
+    std::ofstream(path) << plan.dump(2) << "\n";
+    return;
+  }
+  std::ifstream file(path);
+  std::ostringstream pinned;
+  pinned << file.rdbuf();
+  CAPTURE(path);
+  CHECK(pinned.str() == plan.dump(2) + "\n");
+}
+
+}  // namespace
+
+TEST_SUITE("explain") {
+  TEST_CASE("plan of a free body of water") { compare("free_water", plan_of<2>(head + pool)); }
+  TEST_CASE("plan of a tank with probes") { compare("tank_with_probes", plan_of<2>(head + pool + tank + probes)); }
+  TEST_CASE("plan of a tank with a gate in 3D") { compare("gate", plan_of<3>(head + pool + gates)); }
+  TEST_CASE("plan without re-initialization and transport velocity") {
+    compare("plain_numerics", plan_of<2>(head + pool + tank + "numerics: {density_reinitialization: none, transport_velocity: false}\n"));
+  }
+}
