@@ -49,7 +49,7 @@ PvdFile PvdFile::resume(const std::string& path, double last_time) {
 }
 
 void PvdFile::add(double time, const std::string& frame) {
-  std::erase_if(frames_, [&](const Frame& f) { return f.file == frame; });
+  std::erase_if(frames_, [&](const Frame& f) { return f.time >= time; });
   frames_.push_back({time, frame});
   write();
 }

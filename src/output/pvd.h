@@ -18,7 +18,7 @@ class PvdFile {
   static PvdFile resume(const std::string& path, double last_time);
 
   /// Adds a frame (its path relative to the .pvd file) and replaces the file. Throws IoError.
-  /// A frame of the same file name is replaced.
+  /// Frames at that time or later are replaced; a file may be named at several times.
   void add(double time, const std::string& frame);
   /// Drops the frames later than `last_time` (s) and replaces the file.
   void truncate_after(double last_time);

@@ -110,9 +110,12 @@ TEST_SUITE("output") {
     CHECK(again.frames()[1].time == 0.1 + 0.2);
     CHECK(again.frames()[1].file == "a&\"b\".vtu");
     CHECK(read_file(folder / "water.pvd").find("late.vtu") == std::string::npos);
-    pvd.add(2, "late.vtu");  // a frame written anew replaces the old one
+    pvd.add(1, "anew.vtu");  // what is written again from an earlier time on replaces the old frames
     CHECK(pvd.frames().size() == 3);
-    CHECK(pvd.frames().back().time == 2);
+    CHECK(pvd.frames().back().file == "anew.vtu");
+    pvd.add(2, "anew.vtu");  // something at rest is written once and named at every time
+    CHECK(pvd.frames().size() == 4);
+    CHECK(pvd.frames()[2].file == pvd.frames()[3].file);
   }
 
   TEST_CASE("a damaged collection is refused") {
