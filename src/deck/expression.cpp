@@ -302,12 +302,17 @@ double evaluate_constant(const std::string& formula, const Variables& variables)
   return Expression::parse(formula, variables, "")(Vec3::Zero(), 0.0);
 }
 
+bool is_given_variable(const std::string& name) {
+  return name == "dimension" || name == "resolution";
+}
+
 std::string why_no_variable(const std::string& name) {
   if (name.empty() || !is_letter(name[0]) ||
       !std::all_of(name.begin(), name.end(), [](char c) { return is_letter(c) || is_digit(c); })) {
     return "must be made of letters, digits and _, and not start with a digit";
   }
   if (name == "pi") return "is already the number pi";
+  if (is_given_variable(name)) return "is already the " + name + " of the deck";
   if (name.size() == 1 && coordinates.find(name) != std::string_view::npos) {
     return "already stands for position or time in formulas";
   }

@@ -59,6 +59,9 @@ class Expression {
 /// The value of a formula of deck variables alone. Throws FormulaError (also when not finite).
 double evaluate_constant(const std::string& formula, const Variables& variables);
 
+/// Names that every deck can use without defining them: its `dimension` and its `resolution`.
+bool is_given_variable(const std::string& name);
+
 /// Whether a deck variable may bear this name; the reason otherwise.
 std::string why_no_variable(const std::string& name);
 

@@ -61,6 +61,11 @@ Schema<Numerics> Numerics::schema() {
       .choices({"summation", "none"});
   s.optional("transport_velocity", &Numerics::transport_velocity, unit::none,
              "whether inner particles are shifted to an even spacing");
+  s.optional("transport_at_surface", &Numerics::transport_at_surface, unit::none,
+             "what is left of the shift where the kernel reaches the free surface: nothing, or its "
+             "part along the surface")
+      .choices({"none", "tangential"})
+      .equation("Eq. 87");
   s.optional("h_factor_water", &Numerics::h_factor_water, unit::none,
              "smoothing length of water in spacings; auto: 1.8")
       .at_least(1)

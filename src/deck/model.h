@@ -39,6 +39,7 @@ struct Numerics {
   double transport_coefficient = 0.2;                  ///< alpha of Eq. 87
   std::string density_reinitialization = "summation";  ///< summation | none
   bool transport_velocity = true;
+  std::string transport_at_surface = "none";   ///< none | tangential
   std::optional<double> h_factor_water;  ///< h / dp; empty: 1.8
   double max_lost_fraction = 0.01;
   std::string outside = "remove";  ///< remove | stop
@@ -96,6 +97,7 @@ struct Model {
   int dimension = 3;
   double resolution = 0.0;        ///< particle spacing dp, m
   Vec3 gravity{0.0, 0.0, -9.81};  ///< m/s2
+  std::optional<std::array<Expression, 3>> body_force;  ///< further acceleration, m/s2
   double end_time = 0.0;          ///< s
   Variables variables;
   std::vector<std::string> include;  ///< already merged when the Model exists

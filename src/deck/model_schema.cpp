@@ -94,6 +94,8 @@ Schema<Model> Model::schema() {
   s.optional("gravity", &Model::gravity, unit::acceleration,
              "a magnitude, pointing along -z, or a vector [x, y, z]")
       .downward();
+  s.optional("body_force", &Model::body_force, unit::acceleration,
+             "acceleration field of x, y, z and t on top of gravity");
   s.required("end_time", &Model::end_time, unit::time, "simulated time at which the run ends")
       .above(0)
       .changeable_on_resume();

@@ -1,6 +1,7 @@
 // The stages of reading a deck: text, includes, overrides, variables, structure, rules.
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -66,10 +67,15 @@ Model read(const DeckText& deck, const std::vector<std::string>& overrides) {
   reading.main_file = deck.name;
   reading.folder = deck.folder;
   model.places[""] = root->place;
-  if (const Entry* variables = find_variables(*root)) read_variables(variables->value, reading);
   const double dimension = number_ahead(*root, "dimension", reading);
-  if (dimension == 2.0 || dimension == 3.0) reading.dimension = static_cast<int>(dimension);
+  if (dimension == 2.0 || dimension == 3.0) {
+    reading.dimension = static_cast<int>(dimension);
+    reading.variables.values.emplace_back("dimension", dimension);
+  }
+  if (const Entry* variables = find_variables(*root)) read_variables(variables->value, reading);
   reading.resolution = number_ahead(*root, "resolution", reading);
+  // A resolution that cannot be read is an error of its own: NaN keeps formulas that use it silent.
+  reading.variables.values.emplace_back("resolution", reading.resolution > 0 ? reading.resolution : std::nan(""));
   read_mapping(*root, {{&schema_of<Model>(), &model}}, {}, reading);
   if (found.has_errors()) throw DeckError(std::move(found));
 

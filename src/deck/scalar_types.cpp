@@ -278,7 +278,8 @@ struct FileType final : ValueType {
 struct VariablesType final : ValueType {
   bool read(const Node&, const Key&, const std::string&, DeckReading& reading,
             void* out) const override {
-    *static_cast<Variables*>(out) = reading.variables;
+    auto& own = *static_cast<Variables*>(out) = reading.variables;
+    std::erase_if(own.values, [](const auto& v) { return is_given_variable(v.first); });
     return true;
   }
   Node write(const void* v, const WriteStyle&) const override {

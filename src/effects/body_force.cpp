@@ -9,7 +9,7 @@ template <int Dim>
 class BodyForce final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"body_force", Stage::force, "Eq. 60, g", "gravity starts the sum of accelerations", false};
+    return {"body_force", Stage::force, "Eq. 60, g", "gravity and the body force of the deck start the sum of accelerations", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
@@ -17,11 +17,11 @@ class BodyForce final : public Effect<Dim> {
   }
 
   std::string acts_on() const override { return "water"; }
-  Needs needs() const override { return {{{"water", &fields::acceleration_sum, Access::write}}, {}}; }
+  Needs needs() const override { return {{{"water", &fields::position, Access::read}, {"water", &fields::acceleration_sum, Access::write}}, {}}; }
   void prepare(World<Dim>& world) override { acceleration_ = &world.set("water").vector(fields::acceleration_sum); }
   void apply(World<Dim>& world) override {
-    const Vec<Dim> g = world.gravity();
-    parallel_for(acceleration_->size(), [&](Index i) { (*acceleration_)[i] = g; });
+    const auto& x = world.set("water").vector(fields::position);
+    parallel_for(acceleration_->size(), [&](Index i) { (*acceleration_)[i] = world.pull(x[i]); });
   }
 
  private:

@@ -50,14 +50,15 @@ class WallReaction final : public Effect<Dim> {
     auto& force = walls_->vector(fields::wall_force);
     const auto& a = water_->vector(fields::acceleration);
     const auto& rho = water_->scalar(fields::density);
-    const Vec<Dim> g = world.gravity();
+    const auto& x = water_->vector(fields::position);
     parallel_for(walls_->size(), [&](Index i) { force[i].setZero(); });
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& second = world.records("water", 1).template get<T>();
       parallel_for(water_->size(), [&](Index i) {
         T* slot = second[i] - record_size;
-        for (int k = 0; k < Dim; ++k) slot[water_slot::pull + k] = static_cast<T>(g[k] - a[i][k]);
+        const Vec<Dim> pull = world.pull(x[i]) - a[i];
+        for (int k = 0; k < Dim; ++k) slot[water_slot::pull + k] = static_cast<T>(pull[k]);
         slot[water_slot::density] = static_cast<T>(rho[i]);
       });
       gather<WaterForceOnWall<Dim>::template Sums>(

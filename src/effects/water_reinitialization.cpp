@@ -164,11 +164,14 @@ class WaterReinitialization final : public Effect<Dim> {
   }
 
   // Eq. 87 with the sign that leads away from crowded places. Wherever the kernel reaches the free
-  // surface, its truncation looks like a rarefaction: there only the part along the surface is taken.
+  // surface, its truncation looks like a rarefaction, much stronger than any real one. Eq. 87 keeps the
+  // part along the surface; as the normal is never exact, what is left stirs still water (kinetic energy
+  // three times as high, 15 spacings deep in 3D), so the default leaves these particles alone.
   void shift(World<Dim>& world) {
     using Pair = SurfacePair<Dim>;
     const double h = water_->smoothing_length();
     const double factor = 2 * world.model().numerics.transport_coefficient * h * h;
+    const bool tangential = world.model().numerics.transport_at_surface == "tangential";
     auto& x = water_->vector(fields::position);
     const auto& surface = water_->tag(fields::surface);
     world.with_pair_precision([&](auto number) {
@@ -187,6 +190,7 @@ class WaterReinitialization final : public Effect<Dim> {
             const Arrangement<Dim>& s = sums_[static_cast<std::size_t>(i)];
             Vec<Dim> move = -factor * s.gradient;
             if (surface[i] || near.share > 0) {
+              if (!tangential) return;
               const double own = surface[i] ? 1.0 : 0.0;  // the list leaves the particle itself out
               const Vec<Dim> mean = to_vec(near.normal) + (surface[i] ? surface_normal(s) : Vec<Dim>::Zero());
               // Surfaces that face each other, as of a thin film or a lonely particle, leave no

@@ -63,14 +63,15 @@ class WaterWallForce final : public Effect<Dim> {
   // g - dv/dt and the density, of the water that a wall can reach.
   template <class T>
   void pack_pull(const World<Dim>& world, const NeighborList& list, Records<Dim, T>& records) {
-    const Vec<Dim> g = world.gravity();
+    const auto& x = water_->vector(fields::position);
     const auto& a = water_->vector(fields::acceleration);
     const auto& rho = water_->scalar(fields::density);
     const auto blocks = list.blocks();
     parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
       for (const std::uint32_t i : blocks[static_cast<std::size_t>(b)].targets) {
         T* slot = records[i] - record_size;
-        for (int k = 0; k < Dim; ++k) slot[water_slot::pull + k] = static_cast<T>(g[k] - a[i][k]);
+        const Vec<Dim> pull = world.pull(x[i]) - a[i];
+        for (int k = 0; k < Dim; ++k) slot[water_slot::pull + k] = static_cast<T>(pull[k]);
         slot[water_slot::density] = static_cast<T>(rho[i]);
       }
     });

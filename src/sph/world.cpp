@@ -17,6 +17,14 @@ World<Dim>::World(const Model& model)
       frozen_(model.numerics.pair_geometry == "frozen") {}
 
 template <int Dim>
+Vec<Dim> World<Dim>::pull(const Vec<Dim>& at) const {
+  if (!model_.body_force) return gravity_;
+  const auto& f = *model_.body_force;
+  const Vec3 place = to_space<Dim>(at);
+  return gravity_ + to_scene<Dim>(Vec3(f[0](place, clock.time), f[1](place, clock.time), f[2](place, clock.time)));
+}
+
+template <int Dim>
 ParticleSet<Dim>& World<Dim>::add_set(std::string name, std::string phase, double spacing, double h, bool moves) {
   sets_.push_back(std::make_unique<ParticleSet<Dim>>(name, std::move(phase), spacing, h));
   for (const FieldSpec* spec : {&fields::id, &fields::part, &fields::position, &fields::velocity})

@@ -49,6 +49,8 @@ class World {
 
   const Model& model() const { return model_; }
   const Vec<Dim>& gravity() const { return gravity_; }  ///< m/s2
+  /// Gravity and the deck's body force at a place, now, m/s2.
+  Vec<Dim> pull(const Vec<Dim>& at) const;
   Clock clock;
 
   /// Adds a set. `moves` is false for sets whose particles never change place.

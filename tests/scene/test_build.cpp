@@ -1,0 +1,167 @@
+#include "scene/build.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <set>
+
+#include "scene/cross_check.h"
+#include "support/rig.h"
+
+using namespace sphgeo;
+using test::Rig;
+
+namespace {
+
+std::string deck(const std::string& material, const std::string& rest, int dimension = 2) {
+  return "dimension: " + std::to_string(dimension) + "\nresolution: 0.05\nend_time: 2\n" +
+         "materials: [{name: water, type: water" + material + "}]\n" + rest;
+}
+
+const std::string pool = "bodies: [{name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [0.5, 0.2, 0.3]}}]\n";
+const std::string tank = "boundaries: [{name: tank, type: tank, min: [0, 0, -0.1], max: [0.5, 0.2, 0.5], open: [top]}]\n";
+
+template <int Dim>
+SoundSpeed sound(const std::string& material, const std::string& rest) {
+  return Rig<Dim>(deck(material, rest, Dim)).scene.sound;
+}
+
+// Ids of all findings of building and checking, in order of id.
+template <int Dim = 2>
+std::multiset<std::string> findings(const std::string& rest, const std::string& material = "") {
+  const Model model = read_deck_text(deck(material, rest, Dim));
+  Diagnostics found;
+  const Scene<Dim> scene = build_scene<Dim>(model, found);
+  check_scene(scene, found);
+  std::multiset<std::string> ids;
+  for (const Diagnostic& d : found.items()) {
+    ids.insert(d.id);
+    CHECK_FALSE(d.message.empty());
+    CHECK_FALSE(d.path.empty());
+    CHECK(d.place.line > 0);
+  }
+  return ids;
+}
+using Ids = std::multiset<std::string>;
+
+std::string body(const std::string& name, const std::string& shape, const std::string& more = "") {
+  return "  - {name: " + name + ", material: water, shape: " + shape + more + "}\n";
+}
+
+}  // namespace
+
+TEST_SUITE("scene") {
+  TEST_CASE("the speed of sound is given, or ten times the largest speed to be expected") {
+    CHECK(sound<2>(", sound_speed: 42", pool).value == 42.0);
+    CHECK(sound<2>(", max_speed: 3", pool).value == doctest::Approx(30));
+    // A dam break: front speed 2 sqrt(g H) from the top of the water down to the floor of the tank.
+    const SoundSpeed fall = sound<2>("", pool + tank);
+    CHECK(fall.max_speed == doctest::Approx(2 * std::sqrt(9.81 * 0.4)));
+    CHECK(fall.value == doctest::Approx(20 * std::sqrt(9.81 * 0.4)));
+    CHECK(fall.because.find("0.4 m") != std::string::npos);
+    CHECK(sound<3>("", pool + tank).value == fall.value);
+    CHECK(sound<2>("", pool).value == doctest::Approx(20 * std::sqrt(9.81 * 0.3)));
+  }
+
+  TEST_CASE("initial speed, initial pressure and moving walls raise the speed of sound") {
+    const std::string still = "gravity: 0\n";
+    std::string fast = pool;
+    fast.replace(fast.find("}}]"), 3, "}, velocity: [6*x, 0, 8*x]}]");
+    CHECK(sound<2>("", still + fast).max_speed == doctest::Approx(5));
+    CHECK(sound<2>("", still + fast).because.find("'pool'") != std::string::npos);
+    std::string pressed = pool;
+    pressed.replace(pressed.find("}}]"), 3, "}, pressure: 2000*z/0.3}]");
+    CHECK(sound<2>("", still + pressed).max_speed == doctest::Approx(2));
+    CHECK(sound<2>("", still + pool + "boundaries: [{name: piston, type: wall, shape: {type: box, min: [-0.5, 0, 0], max: [0, 0.2, 0.3]}, "
+                                      "motion: {displacement: [7*t, 0, 0]}}]\n").max_speed == doctest::Approx(7));
+  }
+
+  TEST_CASE("a scene in which nothing can move has no speed of sound to estimate") {
+    CHECK(findings("gravity: 0\n" + pool) == Ids{"E112"});
+    CHECK(findings("gravity: 0\n" + pool, ", max_speed: 1").empty());
+  }
+
+  TEST_CASE("a sound scene has no findings") {
+    CHECK(findings(pool + tank).empty());
+    CHECK(findings<3>(pool + tank).empty());
+    CHECK(findings(pool + tank + "probes: [{name: a, type: pressure, at: [0.5, 0.1, 0]}, {name: b, type: force, boundary: tank}]\n").empty());
+  }
+
+  TEST_CASE("bodies that overlap are found, bodies that touch are not") {
+    const std::string left = "bodies:\n" + body("left", "{type: box, min: [0, 0, 0], max: [0.5, 0.2, 0.3]}");
+    CHECK(findings(left + body("right", "{type: box, min: [0.5, 0, 0], max: [1, 0.2, 0.3]}")).empty());
+    CHECK(findings(left + body("right", "{type: box, min: [0.4, 0, 0], max: [1, 0.2, 0.3]}")) == Ids{"E120"});
+    CHECK(findings<3>(left + body("right", "{type: sphere, center: [0.25, 0.1, 0.15], radius: 0.1}")) == Ids{"E120"});
+  }
+
+  TEST_CASE("water in a wall is found") {
+    CHECK(findings(pool + "boundaries: [{name: tank, type: tank, min: [0.1, 0, 0], max: [0.5, 0.2, 0.5]}]\n") == Ids{"E121"});
+    CHECK(findings(pool + tank.substr(0, tank.size() - 2) +
+                   ", {name: sill, type: wall, shape: {type: box, min: [0.2, 0, 0], max: [0.3, 1, 0.1]}}]\n") == Ids{"E121"});
+  }
+
+  TEST_CASE("lengths that are no multiple of the spacing, probes outside, probes without a set") {
+    CHECK(findings("bodies:\n" + body("b", "{type: box, min: [0, 0, 0], max: [0.52, 0.2, 0.3]}")) == Ids{"W122"});
+    CHECK(findings("bodies:\n" + body("b", "{type: box, min: [0, 0, 0], max: [0.5, 0.22, 0.3]}")).empty());  // y in 2D
+    CHECK(findings<3>("bodies:\n" + body("b", "{type: box, min: [0, 0, 0], max: [0.52, 0.22, 0.3]}")) == Ids{"W122", "W122"});
+    CHECK(findings(pool + "probes: [{name: far, type: pressure, at: [3, 0, 0.1]}]\n") == Ids{"W123"});
+    CHECK(findings(tank + "probes: [{name: p, type: pressure, at: [0.2, 0, 0.1]}]\n", ", sound_speed: 10") == Ids{"E124"});
+  }
+
+  TEST_CASE("empty bodies and formulas that are no numbers are found") {
+    CHECK(findings("bodies:\n" + body("b", "{type: sphere, center: [0.051, 0, 0.051], radius: 0.01}")) == Ids{"E110"});
+    CHECK(findings("bodies:\n" + body("b", "{type: box, min: [0, 0, 0], max: [0.5, 1, 0.5]}", ", velocity: [sqrt(x - 0.2), 0, 0]")) == Ids{"E111"});
+  }
+
+  TEST_CASE("the initial density follows the hydrostatic pressure") {
+    for (const bool raised : {false, true}) {
+      std::string text = pool;
+      text.replace(text.find("}}]"), 3, raised ? "}, pressure: hydrostatic, level: 0.2}]" : "}, pressure: hydrostatic}]");
+      Rig<2> rig(deck(", sound_speed: 30, density: 900", text));
+      const double level = raised ? 0.2 : 0.3;
+      for (Index i = 0; i < rig.water().size(); ++i) {
+        const double z = rig.water().vector(fields::position)[i][1];
+        CHECK(rig.water().scalar(fields::density)[i] == doctest::Approx(900 + std::max(0.0, 900 * 9.81 * (level - z)) / 900).epsilon(1e-12));
+      }
+    }
+    std::string formula = pool;
+    formula.replace(formula.find("}}]"), 3, "}, pressure: 1e3*x}]");
+    Rig<2> rig(deck(", sound_speed: 10", formula));
+    const Index i = test::particle_at<2>(rig.water(), {0.225, 0.125});
+    REQUIRE(i >= 0);
+    CHECK(rig.water().scalar(fields::density)[i] == doctest::Approx(1000 + 225.0 / 100));
+  }
+
+  TEST_CASE("the same deck builds in 2D and in 3D") {
+    const std::string rest = pool + tank;
+    Rig<2> flat(deck("", rest, 2));
+    Rig<3> deep(deck("", rest, 3));
+    CHECK(flat.water().size() == 10 * 6);
+    CHECK(deep.water().size() == 10 * 4 * 6);
+    CHECK(flat.scene.sound.value == deep.scene.sound.value);
+    CHECK(flat.water().scalar(fields::mass)[0] == doctest::Approx(1000 * 0.05 * 0.05));
+    CHECK(deep.water().scalar(fields::mass)[0] == doctest::Approx(1000 * 0.05 * 0.05 * 0.05));
+    std::set<std::pair<long, long>> a, b;
+    const auto key = [](double x, double z) { return std::pair(std::lround(x / 1e-6), std::lround(z / 1e-6)); };
+    for (Index i = 0; i < flat.water().size(); ++i) a.insert(key(flat.water().vector(fields::position)[i][0], flat.water().vector(fields::position)[i][1]));
+    for (Index i = 0; i < deep.water().size(); ++i) b.insert(key(deep.water().vector(fields::position)[i][0], deep.water().vector(fields::position)[i][2]));
+    CHECK(a == b);
+    CHECK(a.size() == 60);
+    CHECK(flat.scene.body_particles.size() == 1);
+    CHECK(flat.scene.body_particles[0] == std::pair<std::string, Index>("pool", 60));
+    CHECK(flat.scene.boundary_particles[0].second == flat.walls().size());
+  }
+
+  TEST_CASE("several bodies and boundaries: parts, ids and masses") {
+    Rig<2> rig(deck(", density: 800", "bodies:\n" + body("a", "{type: box, min: [0, 0, 0], max: [0.2, 1, 0.2]}", ", velocity: [1, 0, 2*z]") +
+                                          body("b", "{type: box, min: [0.5, 0, 0], max: [0.6, 1, 0.2]}") + tank));
+    REQUIRE(rig.water().size() == 16 + 8);
+    for (Index i = 0; i < rig.water().size(); ++i) {
+      CHECK(rig.water().ids()[i] == static_cast<Id>(i));
+      CHECK(rig.water().tag(fields::part)[i] == (i < 16 ? 0 : 1));
+      CHECK(rig.water().scalar(fields::mass)[i] == doctest::Approx(800 * 0.0025));
+      const double z = rig.water().vector(fields::position)[i][1];
+      CHECK((rig.water().vector(fields::velocity)[i] - (i < 16 ? Vec<2>(1, 2 * z) : Vec<2>(0, 0))).norm() < 1e-14);
+    }
+  }
+}
