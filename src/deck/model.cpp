@@ -133,6 +133,8 @@ Schema<Expect> Expect::schema() {
   s.optional("x", &Expect::x, unit::none, "abscissa column of the table; auto: the first");
   s.optional("y", &Expect::y, unit::none, "ordinate column of the table; auto: the second");
   s.optional("x_scale", &Expect::x_scale, unit::none, "the table's abscissae are multiplied by it");
+  s.optional("x_shift", &Expect::x_shift, unit::none,
+             "added to the scaled abscissae, for a table whose clock started at another moment");
   s.optional("y_scale", &Expect::y_scale, unit::none, "the table's ordinates are multiplied by it");
   s.optional("norm", &Expect::norm, unit::none, "of the difference of two curves")
       .choices({"l2", "max"});

@@ -82,6 +82,7 @@ struct Expect {
   std::optional<std::string> x;  ///< column of the table; empty: the first
   std::optional<std::string> y;  ///< column of the table; empty: the second
   double x_scale = 1.0;
+  double x_shift = 0.0;          ///< added to the scaled abscissae: another origin of time
   double y_scale = 1.0;
   std::string norm = "l2";  ///< l2 | max
   double tolerance = 0.0;

@@ -48,7 +48,7 @@ void measure_curve(const Expect& e, Samples samples, ExpectResult& result) {
   std::vector<double> x = table.numbers(e.x.value_or(table.names().front()));
   std::vector<double> y = table.numbers(e.y ? *e.y : table.names()[1]);
   for (double& v : samples.y) v /= e.scale;
-  for (double& v : x) v *= e.x_scale;
+  for (double& v : x) v = v * e.x_scale + e.x_shift;
   for (double& v : y) v *= e.y_scale;
   for (double& v : x)  // a point outside of the window takes no part, not even in the range
     if ((e.from && v < *e.from) || (e.to && v > *e.to)) v = std::nan("");
