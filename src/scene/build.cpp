@@ -55,7 +55,11 @@ double initial_pressure(const Body& body, const Model& model, double density, co
 template <int Dim>
 void add_water(Scene<Dim>& scene, const Model& model, Diagnostics& found) {
   const Water* water = find_water(model);
-  if (!water) return;
+  const auto of_water = [&](const Body& b) {
+    const MaterialSpec* m = model.material(b.material);
+    return m && m->phase() == "water";
+  };
+  if (!water || std::none_of(model.bodies.begin(), model.bodies.end(), of_water)) return;
   ParticleSet<Dim>& set = scene.world->add_set("water", "water", model.resolution, water_smoothing_length(model), true);
   set.set_constant("density", water->density);
   set.set_constant("viscosity", water->viscosity);
