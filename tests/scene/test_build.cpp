@@ -105,7 +105,8 @@ TEST_SUITE("scene") {
     CHECK(findings("bodies:\n" + body("b", "{type: box, min: [0, 0, 0], max: [0.5, 0.22, 0.3]}")).empty());  // y in 2D
     CHECK(findings<3>("bodies:\n" + body("b", "{type: box, min: [0, 0, 0], max: [0.52, 0.22, 0.3]}")) == Ids{"W122", "W122"});
     CHECK(findings(pool + "probes: [{name: far, type: pressure, at: [3, 0, 0.1]}]\n") == Ids{"W123"});
-    CHECK(findings(tank + "probes: [{name: p, type: pressure, at: [0.2, 0, 0.1]}]\n", ", sound_speed: 10") == Ids{"E124"});
+    CHECK(findings(pool + "probes: [{name: p, type: amount, set: soil}]\n") == Ids{"E124"});
+    CHECK(findings(pool + "probes: [{name: p, type: force, boundary: tank}]\n") == Ids{"E124"});
   }
 
   TEST_CASE("empty bodies and formulas that are no numbers are found") {
