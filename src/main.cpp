@@ -143,7 +143,20 @@ int main(int argc, char** argv) {
       ->add_option("--threads", run.threads, "number of threads (default: what the scene can use)")
       ->check(whole)
       ->type_name("N");
-  run_app->add_flag("--overwrite", run.overwrite, "replace the results in the folder");
+  CLI::Option* overwrite =
+      run_app->add_flag("--overwrite", run.overwrite, "replace the results in the folder");
+  run_app
+      ->add_flag("--resume", run.resume, "go on from the checkpoint in the folder, if there is one")
+      ->excludes(overwrite);
+  run_app
+      ->add_option("--max-hours", run.limits.max_hours,
+                   "stop, resumable, before this wall time is over")
+      ->check(above_zero<double>("a number"))
+      ->type_name("H");
+  run_app
+      ->add_option("--max-steps", run.limits.max_steps, "stop, resumable, after N advection steps")
+      ->check(whole)
+      ->type_name("N");
   run_app->add_flag("--verify", run.verify, "exit with 4 when a result under 'expect' is not met");
   run_app->add_flag("-q,--quiet", run.quiet, "no progress and no time table");
   run_app->callback([&] { code = run_guarded([&] { return run_command(run); }); });

@@ -107,14 +107,14 @@ Measured measure(const std::string& deck, int thread_count, const BenchOptions& 
       if (e.info.stage != Stage::reinitialize && e.info.stage != Stage::observe) s += e.seconds;
     return s;
   };
-  stepper.run(0.0, [] { return false; });  // first lists, outside of the measurement
+  stepper.run(0.0, {[] { return false; }});  // first lists, outside of the measurement
   for (int repeat = 0; repeat < options.repeats; ++repeat) {
     const double calibration = calibrate();
     const auto start = clock_type::now();
     const double acoustic0 = acoustic_seconds(), search0 = stepper.seconds_rearranging();
     const double updates0 = stepper.particle_updates();
     const long searches0 = stepper.rearrangements();
-    stepper.run(model.end_time, [&] { return seconds_since(start) < options.seconds || stepper.particle_updates() == updates0; });
+    stepper.run(model.end_time, {[&] { return seconds_since(start) < options.seconds || stepper.particle_updates() == updates0; }});
     const double updates = stepper.particle_updates() - updates0;
     const double acoustic = acoustic_seconds() - acoustic0, all = seconds_since(start);
     const double per_core = 1.0 / thread_count;

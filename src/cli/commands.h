@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/stop_requests.h"
+
 namespace sphgeo {
 
 struct RunOptions {
@@ -12,6 +14,8 @@ struct RunOptions {
   std::vector<std::string> set;
   int threads = 0;          ///< 0: a sensible number for the scene
   bool overwrite = false;
+  bool resume = false;      ///< go on from the checkpoint in the folder, if there is one
+  RunLimits limits;
   bool verify = false;      ///< exit 4 when an `expect` is not met
   bool quiet = false;
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 
@@ -25,6 +26,11 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 std::vector<std::string> usual_fields(const std::string& set) {
   if (set == "water") return {"velocity", "pressure", "density", "surface", "part"};
   return {"velocity", "normal", "part"};
+}
+
+// How far a CSV file had come at a checkpoint.
+std::uint64_t bytes_at(const StateSource& source, const std::string& series) {
+  return static_cast<std::uint64_t>(source.count(series + "/bytes"));
 }
 
 std::vector<Column> run_columns() {
@@ -68,20 +74,73 @@ std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& 
 }
 
 template <int Dim>
-Recorder<Dim>::Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder)
+Recorder<Dim>::Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder, const StateSource* resume)
     : world_(world), plan_(plan), folder_(folder), frames_(world.model().frame_interval()),
       rows_(world.model().run_interval()), run_("run", run_columns()) {
   const Model& model = world.model();
-  run_.write_to(folder.run_csv());
+  if (resume) run_.resume(folder.run_csv(), bytes_at(*resume, "output/run"));
+  else run_.write_to(folder.run_csv());
   for (const auto& spec : model.probes) {
     auto probe = std::dynamic_pointer_cast<const Probe>(spec);
     auto series = std::make_unique<Series>(spec->name, probe->columns(model));
-    series->write_to(folder.probe_csv(spec->name));
+    if (resume) series->resume(folder.probe_csv(spec->name), bytes_at(*resume, "output/probes/" + spec->name));
+    else series->write_to(folder.probe_csv(spec->name));
     probes_.push_back({std::move(probe), Schedule(model.probe_interval(*spec)), std::move(series)});
   }
+  if (resume) load(*resume);
+  const auto open = [&](const std::string& set) {
+    if (frame_ > 0) pvd_.try_emplace(set, PvdFile::resume(folder.pvd(set), last_frame_time_));
+    else pvd_.try_emplace(set, folder.pvd(set));
+  };
   for (const auto& set : world.sets())
-    if (set->phase() != "wall") pvd_.try_emplace(set->name(), folder.pvd(set->name()));
-  if (!model.boundaries.empty()) pvd_.try_emplace("boundaries", folder.pvd("boundaries"));
+    if (set->phase() != "wall") open(set->name());
+  if (!model.boundaries.empty()) open("boundaries");
+}
+
+template <int Dim>
+void Recorder<Dim>::save(StateSink& sink) {
+  const auto put_bytes = [&](const std::string& at, Series& series) {
+    sink.put_count(at + "/bytes", static_cast<std::int64_t>(series.flush(true)));
+  };
+  put_bytes("output/run", run_);
+  sink.put_number("output/run/next", rows_.next());
+  for (ProbeRun& p : probes_) {
+    put_bytes("output/probes/" + p.series->name(), *p.series);
+    sink.put_number("output/probes/" + p.series->name() + "/next", p.schedule.next());
+  }
+  sink.put_count("output/frames/count", frame_);
+  sink.put_number("output/frames/next", frames_.next());
+  sink.put_number("output/frames/last_time", last_frame_time_);
+  const double seconds[] = {seconds_probes_, seconds_frames_};
+  const std::int64_t calls[] = {calls_probes_, calls_frames_};
+  sink.put("output/seconds", seconds);
+  sink.put("output/calls", calls);
+  // The ledger compares with the first row, which may be long ago.
+  for (const auto& [name, totals] : {std::pair{"first", &first_}, std::pair{"latest", &latest_}})
+    if (*totals) sink.put(std::string("output/ledger/") + name, std::bit_cast<TotalsArray>(**totals));
+}
+
+template <int Dim>
+void Recorder<Dim>::load(const StateSource& source) {
+  rows_.set_next(source.number("output/run/next"));
+  for (ProbeRun& p : probes_) p.schedule.set_next(source.number("output/probes/" + p.series->name() + "/next"));
+  frame_ = source.count("output/frames/count");
+  frames_.set_next(source.number("output/frames/next"));
+  last_frame_time_ = source.number("output/frames/last_time");
+  double seconds[2];
+  std::int64_t calls[2];
+  source.get("output/seconds", std::span<double>(seconds));
+  source.get("output/calls", std::span<std::int64_t>(calls));
+  seconds_probes_ = seconds[0];
+  seconds_frames_ = seconds[1];
+  calls_probes_ = calls[0];
+  calls_frames_ = calls[1];
+  for (const auto& [name, totals] : {std::pair{"first", &first_}, std::pair{"latest", &latest_}})
+    if (const std::string at = std::string("output/ledger/") + name; source.has(at)) {
+      TotalsArray numbers;
+      source.get(at, std::span<double>(numbers));
+      *totals = std::bit_cast<Totals>(numbers);
+    }
 }
 
 template <int Dim>
@@ -130,7 +189,8 @@ typename Recorder<Dim>::Totals Recorder<Dim>::totals() const {
   sum.potential = e.potential;
   sum.internal = e.internal;
   sum.mass = ordered_sum(n, [&](Index i) { return m[i]; });
-  sum.momentum = to_space<Dim>(ordered_sum(n, [&](Index i) -> Vec<Dim> { return m[i] * v[i]; }));
+  const Vec3 momentum = to_space<Dim>(ordered_sum(n, [&](Index i) -> Vec<Dim> { return m[i] * v[i]; }));
+  sum.momentum = {momentum.x(), momentum.y(), momentum.z()};
   sum.max_speed = std::sqrt(block_max(n, [&](Index i) { return v[i].squaredNorm(); }, 0.0));
   sum.min_density = block_min(n, [&](Index i) { return rho[i]; });
   sum.max_density = block_max(n, [&](Index i) { return rho[i]; });
@@ -149,8 +209,8 @@ void Recorder<Dim>::sample_run(double wall_seconds) {
   const Clock& c = world_.clock;
   const double row[] = {static_cast<double>(c.advection_steps), static_cast<double>(c.acoustic_steps),
                         c.dt_advection, c.dt_acoustic, static_cast<double>(particles), static_cast<double>(lost),
-                        t.max_speed, t.min_density, t.max_density, t.mass, t.momentum.x(), t.momentum.y(),
-                        t.momentum.z(), t.kinetic, t.potential, t.internal, wall_seconds};
+                        t.max_speed, t.min_density, t.max_density, t.mass, t.momentum[0], t.momentum[1],
+                        t.momentum[2], t.kinetic, t.potential, t.internal, wall_seconds};
   run_.add(c.time, row);
 }
 
@@ -161,6 +221,7 @@ void Recorder<Dim>::write_frame() {
     if (set->phase() != "wall") write_set(*set);
   if (!world_.model().boundaries.empty()) write_boundaries();
   ++frame_;
+  last_frame_time_ = world_.clock.time;
   ++calls_frames_;
   seconds_frames_ += seconds_since(start);
 }
@@ -264,9 +325,10 @@ std::vector<LedgerRow> Recorder<Dim>::ledger() const {
   const auto relative = [](double difference, double scale) { return scale > 0 ? std::abs(difference) / scale : 0.0; };
   const double energy_a = a.kinetic + a.potential + a.internal, energy_b = b.kinetic + b.potential + b.internal;
   const double energy_scale = std::max({std::abs(energy_a), a.kinetic, b.kinetic});
-  const auto list = [](const Vec3& v) { return std::vector<double>{v.x(), v.y(), v.z()}; };
+  const auto vec = [](const std::array<double, 3>& v) { return Vec3(v[0], v[1], v[2]); };
+  const auto list = [](const std::array<double, 3>& v) { return std::vector<double>(v.begin(), v.end()); };
   return {{"mass", "kg", {a.mass}, {b.mass}, {}, relative(b.mass - a.mass, a.mass)},
-          {"momentum", "kg m/s", list(a.momentum), list(b.momentum), {}, relative((b.momentum - a.momentum).norm(), a.mass * speed)},
+          {"momentum", "kg m/s", list(a.momentum), list(b.momentum), {}, relative((vec(b.momentum) - vec(a.momentum)).norm(), a.mass * speed)},
           {"energy", "J", {energy_a}, {energy_b}, {}, relative(energy_b - energy_a, energy_scale)}};
 }
 

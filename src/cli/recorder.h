@@ -1,6 +1,7 @@
 #pragma once
 // Everything a run writes while it goes on: probe series, frames, run.csv. It only looks.
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -26,6 +27,8 @@ class Schedule {
   bool due(double time) const { return time >= next_ - 1e-12 * interval_; }
   /// Moves on to the first multiple after `time`.
   void done(double time);
+  double next() const { return next_; }
+  void set_next(double time) { next_ = time; }
 
  private:
   double interval_;
@@ -35,8 +38,12 @@ class Schedule {
 template <int Dim>
 class Recorder {
  public:
-  /// Opens all files. Throws IoError.
-  Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder);
+  /// Opens all files; with `resume` it goes on with those that are there, cut back to the checkpoint.
+  /// Throws IoError.
+  Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder, const StateSource* resume = nullptr);
+
+  /// Brings all rows to the disk, then saves how far each file has come.
+  void save(StateSink& sink);
 
   /// At a safe point: samples whatever is due; `last` takes a row of everything.
   void observe(double wall_seconds, bool last);
@@ -56,13 +63,16 @@ class Recorder {
     Schedule schedule;
     std::unique_ptr<Series> series;
   };
+  /// Numbers only: a checkpoint keeps them as an array.
   struct Totals {
     double time = 0;
     double mass = 0, kinetic = 0, potential = 0, internal = 0;
-    Vec3 momentum = Vec3::Zero();
+    std::array<double, 3> momentum{};
     double max_speed = 0, min_density = 0, max_density = 0;
   };
+  using TotalsArray = std::array<double, sizeof(Totals) / sizeof(double)>;
 
+  void load(const StateSource& source);
   void sample_probe(ProbeRun& p);
   void sample_run(double wall_seconds);
   Totals totals() const;
@@ -78,6 +88,7 @@ class Recorder {
   std::map<std::string, PvdFile> pvd_;
   Series run_;
   Index frame_ = 0;
+  double last_frame_time_ = -1;  ///< s; -1: no frame yet
   std::optional<Totals> first_, latest_;
   double seconds_probes_ = 0, seconds_frames_ = 0;
   long calls_probes_ = 0, calls_frames_ = 0;

@@ -2,9 +2,11 @@
 
 #include <chrono>
 #include <iostream>
+#include <optional>
 #include <thread>
 
 #include "cli/commands.h"
+#include "cli/keeper.h"
 #include "cli/recorder.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -27,6 +29,20 @@ ProgressState progress_of(const Model& model, const Clock& c, Index particles, d
   return {c.time, model.end_time, c.advection_steps, c.acoustic_steps, c.dt_acoustic, particles, wall};
 }
 
+/// What --resume finds in the folder: a checkpoint, or nothing to go on from.
+FoundCheckpoint checkpoint_of(const RunOptions& options, const Model& model) {
+  if (!options.resume || !holds_results(options.folder)) return {};
+  const std::string folder = options.folder;
+  FoundCheckpoint found = find_checkpoint(folder + "/checkpoint.h5", folder + "/checkpoint.prev.h5");
+  for (const std::string& warning : found.warnings) std::cerr << "warning: " << warning << "\n";
+  if (!found.reader) {
+    std::cerr << "warning: " << folder << " holds no checkpoint yet: the run starts at t = 0\n";
+    return {};
+  }
+  require_same_deck(model, *found.reader);
+  return found;
+}
+
 /// The run of one deck in one dimension.
 template <int Dim>
 class DeckRun {
@@ -35,53 +51,92 @@ class DeckRun {
       : model_(model), options_(options), start_(start), progress_(std::cerr, progress_style_of_stderr(options.quiet)) {}
 
   int operator()() {
-    Diagnostics found = model_.warnings;
-    Scene<Dim> scene = build_scene<Dim>(model_, found);
-    check_scene(scene, found);
-    if (found.has_errors()) throw DeckError(found);
-    if (!found.items().empty()) std::cerr << found.render();
+    const FolderLock lock(options_.folder);
+    FoundCheckpoint checkpoint = checkpoint_of(options_, model_);
+    const StateSource* resumed = checkpoint.reader.get();
+    Scene<Dim> scene = make_scene(resumed);
     World<Dim>& world = *scene.world;
-    Index particles = 0;
     std::vector<std::string> names;
+    for (const auto& set : world.sets()) names.push_back(set->name());
+
+    // Without a checkpoint, what a resumed run finds in its folder is of no use to it.
+    const RunFolder folder(options_.folder, resumed                                 ? ExistingResults::resume
+                                            : options_.overwrite || options_.resume ? ExistingResults::overwrite
+                                                                                    : ExistingResults::refuse);
+    StopRequests requests(folder.stop_file(), options_.limits);
+    Plan<Dim> plan(world, wishes_of(model_, names));
+    if (resumed) {
+      world.load(*resumed);
+      plan.load(*resumed);
+    }
+    Stepper<Dim> stepper(world, plan);
+    if (resumed) {
+      stepper.load(*resumed);
+      wall_before_ = resumed->number("wall_seconds");
+      steps_before_ = world.clock.advection_steps;
+      std::cerr << fmt::format("going on from t = {:.6g} s, advection step {} ({})\n", world.clock.time, steps_before_, checkpoint.path);
+    }
+    write_file_atomically(folder.resolved_deck(), resolved_yaml(model_));
+    Recorder<Dim> recorder(world, plan, folder, resumed);
+    checkpoint.reader.reset();  // its memory is needed for the neighbor lists
+    Index particles = 0;
     for (const auto& set : world.sets()) {
-      names.push_back(set->name());
       if (set->phase() != "wall") particles += set->size();
       summary_.particles.emplace_back(set->name(), set->size());
     }
     set_threads(sensible_threads(particles, options_.threads));
+    Keeper<Dim> keeper({world, plan, stepper, recorder}, folder, wall_before_);
 
-    const RunFolder folder(options_.folder, options_.overwrite ? ExistingResults::overwrite : ExistingResults::refuse);
-    write_file_atomically(folder.resolved_deck(), resolved_yaml(model_));
-    Plan<Dim> plan(world, wishes_of(model_, names));
-    Recorder<Dim> recorder(world, plan, folder);
-    Stepper<Dim> stepper(world, plan);
-    std::string failure;
+    RunHooks hooks;
+    hooks.at_safe_point = [&] {
+      recorder.observe(wall_before_ + seconds_since(start_), world.clock.time >= model_.end_time);
+      progress_.update(progress_of(model_, world.clock, particles, seconds_since(start_)));
+      return true;
+    };
+    hooks.before_rearranging = [&] {
+      const double wall = seconds_since(start_);
+      const double steps = static_cast<double>(world.clock.advection_steps - steps_before_);
+      // What ending takes: one more step, and the checkpoint (an unknown one is guessed to be slow).
+      const double reserve = wall / steps + (keeper.count() > 0 ? keeper.last_seconds() : 1e-7 * static_cast<double>(world.bytes()) / 100);
+      stopped_ = requests.reason(wall, reserve, static_cast<long>(steps));
+      if (!stopped_.empty() || world.clock.time >= model_.end_time) keeper.keep(wall);
+      else keeper.keep_if_due(wall);
+      return stopped_.empty();
+    };
+    std::optional<UnstableError> failure;
     try {
-      stepper.run(model_.end_time, [&] {
-        const double wall = seconds_since(start_);
-        recorder.observe(wall, world.clock.time >= model_.end_time);
-        progress_.update(progress_of(model_, world.clock, particles, wall));
-        return true;
-      });
+      stepper.run(model_.end_time, hooks);
     } catch (const UnstableError& e) {
-      failure = e.what();
+      failure = e;
       recorder.write_frame();
     }
     progress_.clear();
-    finish(world, plan, recorder, stepper, folder, failure);
+    finish({world, plan, stepper, recorder}, keeper, folder, failure);
     return summary_.exit_code;
   }
 
  private:
-  void finish(World<Dim>& world, const Plan<Dim>& plan, const Recorder<Dim>& recorder,
-              const Stepper<Dim>& stepper, const RunFolder& folder, const std::string& failure) {
-    const bool unstable = !failure.empty();
-    summary_.expect = evaluate(model_.expect, [&](const std::string& name) { return recorder.series(name); });
+  Scene<Dim> make_scene(const StateSource* resumed) {
+    Diagnostics found = model_.warnings;
+    Scene<Dim> scene = build_scene<Dim>(model_, found, resumed ? Filling::none : Filling::bodies_and_boundaries);
+    if (!resumed) check_scene(scene, found);
+    if (found.has_errors()) throw DeckError(found);
+    if (!found.items().empty()) std::cerr << found.render();
+    return scene;
+  }
+
+  void finish(const RunParts<Dim>& parts, const Keeper<Dim>& keeper, const RunFolder& folder, const std::optional<UnstableError>& failure) {
+    const World<Dim>& world = parts.world;
+    summary_.expect = evaluate(model_.expect, [&](const std::string& name) { return parts.recorder.series(name); });
     bool met = true;
     for (const ExpectResult& r : summary_.expect) met = met && r.pass;
-    summary_.status = unstable ? "unstable" : "done";
-    summary_.message = failure;
-    summary_.exit_code = static_cast<int>(unstable ? ExitCode::unstable : options_.verify && !met ? ExitCode::mismatch : ExitCode::done);
+    const bool stopped = !failure && !stopped_.empty();
+    summary_.status = failure ? "unstable" : stopped ? "stopped" : "done";
+    summary_.message = failure ? failure->what() : stopped_;
+    summary_.exit_code = static_cast<int>(failure                     ? ExitCode::unstable
+                                          : stopped                   ? ExitCode::stopped
+                                          : options_.verify && !met   ? ExitCode::mismatch
+                                                                      : ExitCode::done);
     summary_.version = version();
     summary_.title = model_.title;
     summary_.deck = options_.deck;
@@ -91,37 +146,56 @@ class DeckRun {
     summary_.advection_steps = world.clock.advection_steps;
     summary_.acoustic_steps = world.clock.acoustic_steps;
     summary_.time_s = world.clock.time;
-    summary_.wall_s = seconds_since(start_);
+    summary_.wall_s = wall_before_ + seconds_since(start_);
     summary_.memory_peak_bytes = peak_memory_bytes();
-    std::vector<TimeRow> rows = recorder.time_rows();
+    const Stepper<Dim>& stepper = parts.stepper;
+    std::vector<TimeRow> rows = parts.recorder.time_rows();
     double stepping = stepper.seconds_rearranging();
     rows.push_back({"neighbor_lists", stepper.rearrangements(), stepping, 0});
-    for (const auto& e : plan.effects()) {
+    rows.push_back({"guard", stepper.guard().calls(), stepper.guard().seconds(), 0});
+    rows.push_back({"checkpoints", keeper.count(), keeper.seconds(), 0});
+    for (const auto& e : parts.plan.effects()) {
       rows.push_back({e.info.name, e.calls, e.seconds, 0});
       if (e.info.stage != Stage::observe) stepping += e.seconds;
     }
     summary_.particle_updates_per_s_per_core = stepping > 0 ? stepper.particle_updates() / stepping / threads() : 0;
     summary_.effects = with_rest(std::move(rows), summary_.wall_s);
-    summary_.ledger = recorder.ledger();
-    summary_.guard.tripped = unstable;
-    summary_.guard.reason = failure;
-    for (const auto& [name, count] : world.lost())
-      summary_.guard.extremes.emplace_back("lost_" + name, static_cast<double>(count));
+    summary_.ledger = parts.recorder.ledger();
+    summary_.checkpoint = {keeper.count(), keeper.seconds(), keeper.bytes()};
+    summary_.guard.extremes = stepper.guard().extremes();
+    if (failure) {
+      const Instability& where = failure->instability;
+      summary_.guard.tripped = true;
+      summary_.guard.reason = failure->what();
+      summary_.guard.cause = where.cause;
+      summary_.guard.effect = where.effect;
+      summary_.guard.set = where.set;
+      summary_.guard.particle = where.particle;
+      summary_.guard.place = where.place;
+      summary_.guard.time = where.time;
+    }
     write_summary(folder.summary(), summary_);
-    report(world);
+    report(world, folder);
   }
 
-  void report(const World<Dim>& world) const {
+  void report(const World<Dim>& world, const RunFolder& folder) const {
     if (!options_.quiet) {
       std::cerr << render_time_table(summary_.effects);
       std::cerr << fmt::format("{} acoustic steps, {:.3g} million particle updates per second and core on {} thread{}\n",
                                summary_.acoustic_steps, summary_.particle_updates_per_s_per_core / 1e6, summary_.threads,
                                summary_.threads == 1 ? "" : "s");
+      if (summary_.checkpoint.count > 0)
+        std::cerr << fmt::format("{} checkpoint{}, {:.3g} MB, {:.3g} s each\n", summary_.checkpoint.count, summary_.checkpoint.count == 1 ? "" : "s",
+                                 static_cast<double>(summary_.checkpoint.bytes) / 1e6, summary_.checkpoint.seconds / static_cast<double>(summary_.checkpoint.count));
     }
     for (const auto& [name, count] : world.lost())
       if (count > 0) std::cerr << fmt::format("warning: {} particles of '{}' left the domain and were removed\n", count, name);
-    if (!summary_.expect.empty()) std::cout << render_expectations(summary_.expect);
-    if (!summary_.message.empty()) std::cerr << "error: " << summary_.message << "\n";
+    if (!summary_.expect.empty() && summary_.status != "stopped") std::cout << render_expectations(summary_.expect);
+    if (summary_.status == "stopped")
+      std::cerr << fmt::format("stopped at t = {:.6g} s: {}; the same command with --resume goes on\n", summary_.time_s, summary_.message);
+    else if (!summary_.message.empty())
+      std::cerr << "error: " << summary_.message << "\n"
+                << (summary_.checkpoint.count > 0 ? "the last checkpoint is sound: " + folder.checkpoint() + "\n" : "");
   }
 
   const Model& model_;
@@ -129,6 +203,9 @@ class DeckRun {
   clock_type::time_point start_;
   Progress progress_;
   Summary summary_;
+  double wall_before_ = 0;    ///< of the parts of this run that came before, s
+  Index steps_before_ = 0;    ///< advection steps of those
+  std::string stopped_;       ///< why the run ends early
 };
 
 }  // namespace

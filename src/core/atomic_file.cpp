@@ -37,6 +37,16 @@ bool is_special(const std::string& path) {
   return ::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
 }
 
+/// Makes a rename survive a power cut, where the file system can.
+void sync_folder_of(const std::string& path) {
+  const auto slash = path.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
 }  // namespace
 
 void throw_io_error(const std::string& path, const std::string& what, int error_number) {
@@ -75,7 +85,7 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
   if (error != 0) fail("cannot write", error);
 }
 
-void AtomicFile::commit() {
+void AtomicFile::commit(const std::string& keep_old_as) {
   flush_buffer();
   // A full disk or a lost network drive may show up only here. Pipes cannot be synchronized.
   if (!temporary_.empty() && ::fsync(descriptor_) != 0) fail("cannot flush to the disk", errno);
@@ -84,11 +94,18 @@ void AtomicFile::commit() {
     if (!temporary_.empty()) ::unlink(temporary_.c_str());
     throw_io_error(path_, "cannot close the file", error);
   }
-  if (!temporary_.empty() && std::rename(temporary_.c_str(), path_.c_str()) != 0) {
+  if (temporary_.empty()) return;
+  if (!keep_old_as.empty() && std::rename(path_.c_str(), keep_old_as.c_str()) != 0 && errno != ENOENT) {
+    const int error = errno;
+    ::unlink(temporary_.c_str());
+    throw_io_error(path_, "cannot rename the old file to " + keep_old_as, error);
+  }
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
     const int error = errno;
     ::unlink(temporary_.c_str());
     throw_io_error(path_, "cannot rename the finished file to this name", error);
   }
+  if (!keep_old_as.empty()) sync_folder_of(path_);
 }
 
 void AtomicFile::flush_buffer() {

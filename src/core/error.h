@@ -1,10 +1,12 @@
 #pragma once
 // Failures that end the program, each tied to one exit code.
 
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "core/diagnostic.h"
+#include "core/types.h"
 
 namespace sphgeo {
 
@@ -32,10 +34,22 @@ class IoError : public Error {
   IoError(const std::string& path, const std::string& what) : Error(ExitCode::io, path + ": " + what) {}
 };
 
+/// Where and when a run became unstable.
+struct Instability {
+  std::string cause;             ///< one word: not_finite, speed, density, step, lost, penetration ...
+  std::string effect;            ///< whose result it is, "" when unknown
+  std::string set;
+  std::optional<Id> particle;
+  std::optional<Vec3> place;     ///< m
+  std::optional<double> time;    ///< s
+};
+
 /// The guard stopped the run.
 class UnstableError : public Error {
  public:
-  explicit UnstableError(const std::string& what) : Error(ExitCode::unstable, what) {}
+  UnstableError(const std::string& what, Instability where)
+      : Error(ExitCode::unstable, what), instability(std::move(where)) {}
+  Instability instability;
 };
 
 }  // namespace sphgeo

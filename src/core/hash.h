@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string_view>
 
 namespace sphgeo {
@@ -42,6 +43,23 @@ inline std::uint64_t fnv1a_bytes(const void* data, std::size_t bytes,
 constexpr std::uint64_t fnv1a(std::string_view text, std::uint64_t state = fnv1a_start) {
   for (const char c : text) state = (state ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
   return state;
+}
+
+/// Checksum of a large array, several bytes a cycle: FNV-1a over 64-bit words in four streams. Each
+/// step is a bijection, so any change of a single word changes the result.
+inline std::uint64_t checksum(const void* data, std::size_t bytes) {
+  const auto* p = static_cast<const unsigned char*>(data);
+  std::uint64_t stream[4] = {fnv1a_start, fnv1a_start + 1, fnv1a_start + 2, fnv1a_start + 3};
+  std::size_t k = 0;
+  for (; k + sizeof stream <= bytes; k += sizeof stream)
+    for (std::size_t s = 0; s < 4; ++s) {
+      std::uint64_t word;
+      std::memcpy(&word, p + k + 8 * s, sizeof word);
+      stream[s] = (stream[s] ^ word) * 0x100000001b3u;
+    }
+  std::uint64_t sum = fnv1a_bytes(p + k, bytes - k, bytes);
+  for (const std::uint64_t s : stream) sum = mix_bits(sum ^ s);
+  return sum;
 }
 
 }  // namespace sphgeo

@@ -71,9 +71,15 @@ Schema<Numerics> Numerics::schema() {
       .at_least(1)
       .at_most(3);
   s.optional("max_lost_fraction", &Numerics::max_lost_fraction, unit::none,
-             "the run stops when more than this fraction of a set has left the domain")
+             "the run stops when more than this fraction of a set has left the domain or sits inside a "
+             "wall")
       .at_least(0)
       .at_most(1)
+      .changeable_on_resume();
+  s.optional("density_bound", &Numerics::density_bound, unit::none,
+             "the run stops when a density departs from that at rest by more than this fraction")
+      .above(0)
+      .at_most(0.95)
       .changeable_on_resume();
   s.optional("outside", &Numerics::outside, unit::none,
              "what happens to particles that leave the domain")
@@ -111,6 +117,9 @@ Schema<Output> Output::schema() {
   s.optional("run_every", &Output::run_every, unit::time,
              "interval between rows of run.csv; auto: end_time / 200")
       .above(0);
+  s.optional("checkpoint_every", &Output::checkpoint_every, unit::time,
+             "wall time between checkpoints, at least; never so short that they take 2 % of a run")
+      .at_least(0);
   return s;
 }
 

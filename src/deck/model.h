@@ -42,6 +42,7 @@ struct Numerics {
   std::string transport_at_surface = "none";   ///< none | tangential
   std::optional<double> h_factor_water;  ///< h / dp; empty: 1.8
   double max_lost_fraction = 0.01;
+  double density_bound = 0.5;            ///< largest |rho / rho0 - 1| before the guard stops the run
   std::string outside = "remove";  ///< remove | stop
   std::optional<Vec3> domain_min;  ///< m; empty: from bodies and boundaries
   std::optional<Vec3> domain_max;
@@ -59,6 +60,7 @@ struct Frames {
 struct Output {
   Frames frames;
   std::optional<double> run_every;  ///< rows of run.csv, s; empty: end_time / 200
+  double checkpoint_every = 600;    ///< wall time, s
   static Schema<Output> schema();
 };
 
@@ -137,7 +139,13 @@ std::string resolved_yaml(const Model& model);
 /// JSON Schema (draft 7) of the deck language.
 Json json_schema();
 
-/// Hash of what decides the result: the resolved deck without the keys that may change on resume.
+/// The resolved deck without the keys that may change on resume: what decides the result.
+std::string decisive_yaml(const Model& model);
+
+/// Hash of decisive_yaml().
 std::string deck_hash(const Model& model);
+
+/// Keys in which two texts of decisive_yaml() differ, as "numerics.limiter: 3 there, 5 here".
+std::vector<std::string> differing_keys(const std::string& there, const std::string& here);
 
 }  // namespace sphgeo

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "core/hash.h"
 #include "core/text.h"
 #include "deck/model.h"
+#include "deck/yaml_reader.h"
 #include "deck/yaml_writer.h"
 
 namespace sphgeo {
@@ -133,10 +136,53 @@ std::string resolved_yaml(const Model& model) {
          write_yaml(resolved_tree(model, {}));
 }
 
-std::string deck_hash(const Model& model) {
+std::string decisive_yaml(const Model& model) {
   WriteStyle style;
   style.for_hash = true;
-  return fmt::format("{:016x}", fnv1a(write_yaml(resolved_tree(model, style))));
+  return write_yaml(resolved_tree(model, style));
+}
+
+std::string deck_hash(const Model& model) {
+  return fmt::format("{:016x}", fnv1a(decisive_yaml(model)));
+}
+
+namespace {
+
+void flatten(const Node& node, const std::string& path, std::map<std::string, std::string>& out) {
+  switch (node.kind) {
+    case Node::Kind::null: out[path] = "nothing"; break;
+    case Node::Kind::scalar: out[path] = node.text; break;
+    case Node::Kind::list:
+      for (std::size_t k = 0; k < node.items.size(); ++k)
+        flatten(node.items[k], fmt::format("{}[{}]", path, k), out);
+      break;
+    case Node::Kind::map:
+      for (const Entry& e : node.entries) flatten(e.value, join_path(path, e.key), out);
+      break;
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> differing_keys(const std::string& there, const std::string& here) {
+  std::map<std::string, std::string> values[2];
+  const std::string* texts[2] = {&there, &here};
+  for (int k = 0; k < 2; ++k) {
+    Diagnostics ignored;
+    if (const auto tree = read_yaml(*texts[k], "deck", ignored)) flatten(*tree, "", values[k]);
+  }
+  std::vector<std::string> out;
+  const auto value = [](const std::map<std::string, std::string>& from, const std::string& path) {
+    const auto it = from.find(path);
+    return it == from.end() ? std::string("nothing") : it->second;
+  };
+  std::set<std::string> paths;
+  for (const auto& side : values)
+    for (const auto& [path, text] : side) paths.insert(path);
+  for (const std::string& path : paths)
+    if (value(values[0], path) != value(values[1], path))
+      out.push_back(fmt::format("{}: {} there, {} here", path, value(values[0], path), value(values[1], path)));
+  return out;
 }
 
 Json json_schema() {

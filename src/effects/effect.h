@@ -55,10 +55,26 @@ struct EffectInfo {
   bool supporting = false;
 };
 
-/// Upper bounds of the two clocks, s.
+/// Upper bounds of the two clocks, s, and the fastest particle that they rest on.
 struct StepLimits {
   double advection = std::numeric_limits<double>::infinity();
   double acoustic = std::numeric_limits<double>::infinity();
+  double mach = 0;       ///< largest |v| / c of any set; NaN when a velocity is no number
+  std::string fastest;   ///< the set that holds it
+
+  void note_speed(const std::string& set, double speed_over_sound) {
+    if (mach != mach || speed_over_sound <= mach) return;
+    mach = speed_over_sound;
+    fastest = set;
+  }
+};
+
+/// What a scalar field must stay within; the guard watches it.
+struct FieldBound {
+  std::string set;
+  const FieldSpec* field;
+  double low, high;   ///< SI
+  std::string cause;  ///< what to look for when it is left
 };
 
 template <int Dim>
@@ -72,6 +88,8 @@ class Effect {
   virtual void apply(World<Dim>&) = 0;
   /// Lowers the bounds to what this effect stays stable with.
   virtual void limit(const World<Dim>&, StepLimits&) const {}
+  /// Adds what the guard is to watch.
+  virtual void bounds(const World<Dim>&, std::vector<FieldBound>&) const {}
 };
 
 /// An effect's answer to a scene: instances, or none; the sentence says why in both cases.

@@ -1,8 +1,5 @@
-#include <fmt/format.h>
-
 #include <cmath>
 
-#include "core/error.h"
 #include "core/parallel.h"
 #include "effects/effect.h"
 #include "effects/water_phase.h"
@@ -59,7 +56,9 @@ class WaterKick final : public Effect<Dim> {
     const Numerics& n = world.model().numerics;
     const WaterConstants w = WaterConstants::of(world);
     const double h = water_->smoothing_length();
-    const double speed = max_speed(world, w.sound_speed);
+    const auto& v = water_->vector(fields::velocity);
+    const double speed = std::sqrt(block_max(water_->size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
+    limits.note_speed("water", speed / w.sound_speed);
     const double acoustic = n.cfl_acoustic * h / (w.sound_speed + speed);  // Eq. 92
     limits.acoustic = std::min(limits.acoustic, acoustic);
     // Eq. 91. At rest h/|v| has no bound: then the acoustic step bounds it, by a ratio that equals
@@ -70,24 +69,6 @@ class WaterKick final : public Effect<Dim> {
   }
 
  private:
-  // The largest speed, m/s; stops the run when a particle is faster than sound or not a number.
-  double max_speed(const World<Dim>& world, double sound_speed) const {
-    const auto& v = water_->vector(fields::velocity);
-    const double fastest = std::sqrt(block_max(water_->size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
-    if (fastest < sound_speed) return fastest;
-    const auto& x = water_->vector(fields::position);
-    for (Index i = 0; i < water_->size(); ++i) {
-      if (v[i].norm() < sound_speed) continue;
-      const Vec3 at = to_space<Dim>(x[i]);
-      throw UnstableError(fmt::format(
-          "the water became unstable at t = {:.6g} s: particle {} at ({:.4g}, {:.4g}, {:.4g}) m moves at {:.4g} m/s, "
-          "which is not below the sound speed of {:.4g} m/s; a larger sound_speed or max_speed of the material, or a "
-          "start closer to equilibrium, may help",
-          world.clock.time, water_->ids()[i], at.x(), at.y(), at.z(), v[i].norm(), sound_speed));
-    }
-    return fastest;
-  }
-
   ParticleSet<Dim>* water_ = nullptr;
 };
 

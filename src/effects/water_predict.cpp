@@ -62,6 +62,12 @@ class WaterPredict final : public Effect<Dim> {
     });
   }
 
+  void bounds(const World<Dim>& world, std::vector<FieldBound>& watched) const override {
+    const double rho0 = water_->constant("density"), most = world.model().numerics.density_bound * rho0;
+    watched.push_back({"water", &fields::density, rho0 - most, rho0 + most,
+                       "pressures of the order of rho0 c0^2: bodies that start inside each other, or a sound speed that is too low"});
+  }
+
  private:
   ParticleSet<Dim>* water_ = nullptr;
 };

@@ -1,14 +1,19 @@
 #include "output/run_folder.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
 
 namespace sphgeo {
@@ -63,10 +68,11 @@ RunFolder::RunFolder(std::string path, ExistingResults existing) : path_(std::mo
     if (!old.empty() && existing == ExistingResults::refuse)
       throw Error(
           ExitCode::usage,
-          fmt::format("{}: the folder holds results ({}{}); replace them with --overwrite, or name "
+          fmt::format("{}: the folder holds results ({}{}); {}replace them with --overwrite, or name "
                       "another folder with -o",
                       path_, old.back().filename().string(),
-                      old.size() > 1 ? fmt::format(" and {} more files", old.size() - 1) : ""));
+                      old.size() > 1 ? fmt::format(" and {} more files", old.size() - 1) : "",
+                      fs::exists(checkpoint()) ? "go on with --resume, " : ""));
     for (const fs::path& file : old) {
       std::error_code error;
       fs::remove(file, error);
@@ -95,6 +101,24 @@ std::string RunFolder::frame(const std::string& set, Index number) const {
 
 std::string RunFolder::frame_name(const std::string& set, Index number) {
   return fmt::format("{}_{:06}.vtu", file_name_of(set), number);
+}
+
+FolderLock::FolderLock(const std::string& folder) : folder_(folder) {
+  std::error_code error;
+  created_ = fs::create_directories(folder_, error);
+  check(error, folder_, "cannot create the folder");
+  descriptor_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ < 0) throw_io_error(folder_, "cannot open the folder", errno);
+  // File systems without locks answer with another error; they go unlocked.
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+  ::close(descriptor_);
+  throw Error(ExitCode::usage, folder_ + ": another run is writing to this folder; wait for it or stop it, or name "
+                                         "another folder with -o");
+}
+
+FolderLock::~FolderLock() {
+  ::close(descriptor_);
+  if (created_) ::rmdir(folder_.c_str());
 }
 
 bool holds_results(const std::string& path) { return !results_in(path).empty(); }

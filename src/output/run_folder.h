@@ -24,6 +24,7 @@ class RunFolder {
   std::string summary() const { return path_ + "/summary.json"; }
   std::string run_csv() const { return path_ + "/run.csv"; }
   std::string checkpoint() const { return path_ + "/checkpoint.h5"; }
+  std::string previous_checkpoint() const { return path_ + "/checkpoint.prev.h5"; }
   std::string report() const { return path_ + "/report.html"; }
   std::string stop_file() const { return path_ + "/stop"; }  ///< asks a run to stop when it appears
   std::string probe_csv(const std::string& probe) const;
@@ -35,6 +36,22 @@ class RunFolder {
 
  private:
   std::string path_;
+};
+
+/// Keeps every other run out of a folder while it lives; the system lets go of it however a process ends.
+class FolderLock {
+ public:
+  /// Creates the folder when it is missing. Throws Error (usage) when another run holds it, IoError.
+  explicit FolderLock(const std::string& folder);
+  /// A folder that was made for nothing goes away again.
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  std::string folder_;
+  bool created_ = false;
+  int descriptor_ = -1;
 };
 
 /// Whether a folder holds files that a run has written.

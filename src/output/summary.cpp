@@ -27,6 +27,7 @@ Json guard_json(const GuardReport& guard) {
   Json out = {{"tripped", guard.tripped}};
   if (guard.tripped) {
     out["reason"] = guard.reason;
+    out["cause"] = guard.cause;
     out["effect"] = guard.effect;
     out["set"] = guard.set;
     out["particle"] = guard.particle ? Json(*guard.particle) : Json(nullptr);
@@ -86,6 +87,8 @@ Json to_json(const Summary& s) {
     out["ledger"][r.name] = std::move(row);
   }
   out["guard"] = guard_json(s.guard);
+  out["checkpoints"] = {
+      {"count", s.checkpoint.count}, {"seconds", number(s.checkpoint.seconds)}, {"bytes", s.checkpoint.bytes}};
   return out;
 }
 

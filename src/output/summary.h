@@ -27,11 +27,18 @@ struct LedgerRow {
 /// What the guard watched, and what stopped the run.
 struct GuardReport {
   bool tripped = false;
-  std::string reason, effect, set;  ///< empty unless tripped
+  std::string reason, cause, effect, set;  ///< empty unless tripped; cause is one word
   std::optional<Id> particle;
   std::optional<Vec3> place;                             ///< m
   std::optional<double> time;                            ///< s
   std::vector<std::pair<std::string, double>> extremes;  ///< max_speed, min_density, lost ...
+};
+
+/// The checkpoints that this process has written.
+struct CheckpointReport {
+  long count = 0;
+  double seconds = 0;       ///< all of them
+  std::uint64_t bytes = 0;  ///< the last one
 };
 
 /// All that summary.json holds.
@@ -53,6 +60,7 @@ struct Summary {
   std::vector<ExpectResult> expect;
   std::vector<LedgerRow> ledger;
   GuardReport guard;
+  CheckpointReport checkpoint;
 };
 
 /// The summary as JSON, keys in a fixed order; numbers that are not finite become null.

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/state_io.h"
 #include "core/types.h"
 #include "deck/unit.h"
 
@@ -36,6 +37,13 @@ class FieldBase {
   /// New element k is old element order[k]; order may be shorter than the field.
   virtual void permute(const std::vector<std::uint32_t>& order) = 0;
   virtual std::size_t bytes() const = 0;
+  /// Memory of the values alone, as a checkpoint holds them.
+  virtual std::size_t value_bytes() const = 0;
+  /// Hands over all values under this name, or takes them back for as many particles as the field has.
+  virtual void save(StateSink& sink, const std::string& name) const = 0;
+  virtual void load(const StateSource& source, const std::string& name) = 0;
+  /// The first particle whose value is not finite, or -1.
+  virtual Index first_not_finite() const = 0;
 
  private:
   const FieldSpec* spec_;
@@ -55,6 +63,10 @@ class Field final : public FieldBase {
   void resize(Index n) override { values_.resize(static_cast<std::size_t>(n), zero()); }
   void permute(const std::vector<std::uint32_t>& order) override;
   std::size_t bytes() const override { return (values_.capacity() + spare_.capacity()) * sizeof(T); }
+  std::size_t value_bytes() const override { return values_.size() * sizeof(T); }
+  void save(StateSink& sink, const std::string& name) const override;
+  void load(const StateSource& source, const std::string& name) override;
+  Index first_not_finite() const override;
 
  private:
   static T zero() {

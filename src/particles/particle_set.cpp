@@ -1,5 +1,9 @@
 #include "particles/particle_set.h"
 
+#include <atomic>
+#include <span>
+#include <type_traits>
+
 #include "core/parallel.h"
 
 namespace sphgeo {
@@ -11,6 +15,80 @@ void Field<T>::permute(const std::vector<std::uint32_t>& order) {
     spare_[static_cast<std::size_t>(k)] = values_[order[static_cast<std::size_t>(k)]];
   });
   values_.swap(spare_);
+}
+
+namespace {
+
+// A field as plain numbers: what it holds, how many per particle.
+template <class T>
+auto numbers_of(T* values, Index n) {
+  const auto count = static_cast<std::size_t>(n);
+  if constexpr (std::is_arithmetic_v<std::remove_const_t<T>>) return std::span<T>(values, count);
+  else {
+    constexpr std::size_t components = std::remove_const_t<T>::SizeAtCompileTime;
+    using Number = std::conditional_t<std::is_const_v<T>, const double, double>;
+    return std::span<Number>(count > 0 ? values->data() : nullptr, count * components);
+  }
+}
+
+}  // namespace
+
+template <class T>
+void Field<T>::save(StateSink& sink, const std::string& name) const {
+  if constexpr (std::is_arithmetic_v<T>) sink.put(name, numbers_of(data(), size()));
+  else sink.put(name, numbers_of(data(), size()), T::SizeAtCompileTime);
+}
+
+template <class T>
+void Field<T>::load(const StateSource& source, const std::string& name) {
+  source.get(name, numbers_of(data(), size()));
+}
+
+template <class T>
+Index Field<T>::first_not_finite() const {
+  if constexpr (std::is_integral_v<T>) return -1;
+  else {
+    // 0 x is 0 for every number, and NaN for what is none: a sum of products, which vectorizes, and
+    // costs one look at the memory.
+    const auto all = numbers_of(data(), size());
+    constexpr Index components = sizeof(T) / sizeof(double);
+    const auto block_bad = [&](Index begin, Index end) {
+      double lanes[8] = {};
+      Index k = begin * components;
+      const Index last = end * components;
+      for (; k + 8 <= last; k += 8)
+        for (int l = 0; l < 8; ++l) lanes[l] += 0.0 * all[static_cast<std::size_t>(k + l)];
+      for (; k < last; ++k) lanes[0] += 0.0 * all[static_cast<std::size_t>(k)];
+      double sum = 0;
+      for (const double l : lanes) sum += l;
+      return sum != 0.0;
+    };
+    constexpr int large_block = 16 * block_size;
+    std::atomic<bool> bad{false};
+    parallel_blocks(size(), large_block, [&](Index begin, Index end, Index) {
+      if (block_bad(begin, end)) bad = true;
+    });
+    if (!bad) return -1;
+    for (Index i = 0; i < size(); ++i)
+      if (block_bad(i, i + 1)) return i;
+    return -1;
+  }
+}
+
+template <int Dim>
+void ParticleSet<Dim>::save(StateSink& sink) const {
+  const std::string at = "sets/" + name_ + "/";
+  sink.put_count(at + "size", size_);
+  for (const auto& [name, field] : fields_)
+    if (field->spec().lifetime != Lifetime::derived) field->save(sink, at + name);
+}
+
+template <int Dim>
+void ParticleSet<Dim>::load(const StateSource& source) {
+  const std::string at = "sets/" + name_ + "/";
+  resize(source.count(at + "size"));
+  for (auto& [name, field] : fields_)
+    if (field->spec().lifetime != Lifetime::derived) field->load(source, at + name);
 }
 
 template <int Dim>

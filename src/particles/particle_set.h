@@ -50,6 +50,11 @@ class ParticleSet {
   void permute(const std::vector<std::uint32_t>& order);
   std::size_t bytes() const;
 
+  /// Saves what does not follow from the deck: state and reference fields of all particles. load()
+  /// takes as many particles as were saved.
+  void save(StateSink& sink) const;
+  void load(const StateSource& source);
+
  private:
   template <class T>
   Field<T>& typed(const FieldSpec& s) const {

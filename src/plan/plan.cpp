@@ -171,6 +171,31 @@ StepLimits Plan<Dim>::limits() const {
   return limits;
 }
 
+template <int Dim>
+std::vector<FieldBound> Plan<Dim>::bounds() const {
+  std::vector<FieldBound> watched;
+  for (const auto& e : effects_) e.effect->bounds(world_, watched);
+  return watched;
+}
+
+template <int Dim>
+void Plan<Dim>::save(StateSink& sink) const {
+  for (const auto& e : effects_) {
+    sink.put_count("effects/" + e.info.name + "/calls", e.calls);
+    sink.put_number("effects/" + e.info.name + "/seconds", e.seconds);
+  }
+}
+
+template <int Dim>
+void Plan<Dim>::load(const StateSource& source) {
+  for (auto& e : effects_) {
+    // An observer may be new: what is asked of a run may change when it goes on.
+    if (!source.has("effects/" + e.info.name + "/calls")) continue;
+    e.calls = source.count("effects/" + e.info.name + "/calls");
+    e.seconds = source.number("effects/" + e.info.name + "/seconds");
+  }
+}
+
 template class Plan<2>;
 template class Plan<3>;
 

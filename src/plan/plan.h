@@ -43,9 +43,15 @@ class Plan {
   /// Runs all effects of the stage, timing each.
   void run(Stage stage);
   StepLimits limits() const;
+  /// What the active effects want watched.
+  std::vector<FieldBound> bounds() const;
 
   const std::vector<PlannedEffect<Dim>>& effects() const { return effects_; }
   const std::vector<UnusedEffect>& unused() const { return unused_; }
+
+  /// Calls and seconds of the time table, so that they go on after a restart.
+  void save(StateSink& sink) const;
+  void load(const StateSource& source);
 
  private:
   void bind(const std::vector<Wish>& wishes);

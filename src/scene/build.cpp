@@ -22,12 +22,12 @@ double support_radius(const Model& model) { return 2 * water_smoothing_length(mo
 namespace {
 
 /// The particles of one body before they join their set.
-struct Filling {
+struct BodyPoints {
   std::vector<Vec3> at;
   double volume;  ///< of one particle
 };
 
-Filling fill_body(const Body& body, const Model& model) {
+BodyPoints fill_body(const Body& body, const Model& model) {
   const double dp = model.resolution;
   if (body.filling == "relaxed") {
     RelaxFillResult relaxed = relax_fill(*body.shape, dp, model.dimension);
@@ -53,7 +53,7 @@ double initial_pressure(const Body& body, const Model& model, double density, co
 }
 
 template <int Dim>
-void add_water(Scene<Dim>& scene, const Model& model, Diagnostics& found) {
+void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics& found) {
   const Water* water = find_water(model);
   const auto of_water = [&](const Body& b) {
     const MaterialSpec* m = model.material(b.material);
@@ -65,11 +65,12 @@ void add_water(Scene<Dim>& scene, const Model& model, Diagnostics& found) {
   set.set_constant("viscosity", water->viscosity);
   set.set_constant("sound_speed", scene.sound.value);
   for (const FieldSpec* f : {&fields::mass, &fields::density, &fields::density_rate}) set.require(*f);
+  if (fill == Filling::none) return;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
     const MaterialSpec* material = model.material(body.material);
     if (!material || material->phase() != "water") continue;
-    const Filling filling = fill_body(body, model);
+    const BodyPoints filling = fill_body(body, model);
     const std::string path = fmt::format("bodies[{}]", b);
     if (filling.at.empty())
       found.error("E110", model.place_of(path + ".shape"), path + ".shape", "the body holds no particle",
@@ -101,7 +102,7 @@ void add_water(Scene<Dim>& scene, const Model& model, Diagnostics& found) {
 }
 
 template <int Dim>
-void add_walls(Scene<Dim>& scene, const Model& model) {
+void add_walls(Scene<Dim>& scene, const Model& model, Filling fill) {
   if (model.boundaries.empty()) return;
   bool moves = false;
   for (const auto& b : model.boundaries) {
@@ -112,6 +113,7 @@ void add_walls(Scene<Dim>& scene, const Model& model) {
   ParticleSet<Dim>& set = scene.world->add_set("walls", "wall", dp, water_smoothing_length(model), moves);
   for (const FieldSpec* f : {&fields::acceleration, &fields::normal, &fields::reference_position, &fields::reference_normal, &fields::no_slip})
     set.require(*f);
+  if (fill == Filling::none) return;
   const Placement placement{dp, support_radius(model), Dim};
   for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
     const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
@@ -176,7 +178,7 @@ Aabb scene_box(const Model& model) {
 }  // namespace
 
 template <int Dim>
-Scene<Dim> build_scene(const Model& model, Diagnostics& found) {
+Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling) {
   Scene<Dim> scene;
   scene.world = std::make_unique<World<Dim>>(model);
   scene.sound = water_sound_speed(model, water_box(model), scene_box(model));
@@ -185,13 +187,13 @@ Scene<Dim> build_scene(const Model& model, Diagnostics& found) {
                 "give max_speed or sound_speed of the water");
     scene.sound.value = 1;
   }
-  add_water(scene, model, found);
-  add_walls(scene, model);
-  set_domain(*scene.world, model);
+  add_water(scene, model, filling, found);
+  add_walls(scene, model, filling);
+  if (filling != Filling::none) set_domain(*scene.world, model);
   return scene;
 }
 
-template Scene<2> build_scene<2>(const Model&, Diagnostics&);
-template Scene<3> build_scene<3>(const Model&, Diagnostics&);
+template Scene<2> build_scene<2>(const Model&, Diagnostics&, Filling);
+template Scene<3> build_scene<3>(const Model&, Diagnostics&, Filling);
 
 }  // namespace sphgeo

@@ -27,10 +27,13 @@ struct Scene {
   SoundSpeed sound{0, 0, ""};
 };
 
+/// Whether the sets are filled, or only made: a checkpoint brings its own particles.
+enum class Filling { bodies_and_boundaries, none };
+
 /// Fills bodies, places boundaries, sets the initial state. Findings about the deck that need
 /// particles go to `found`; the model must outlive the world.
 template <int Dim>
-Scene<Dim> build_scene(const Model& model, Diagnostics& found);
+Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling = Filling::bodies_and_boundaries);
 
 /// c0 of the water: from the deck, or ten times the largest speed to be expected (below Eq. 26).
 SoundSpeed water_sound_speed(const Model& model, const Aabb& water, const Aabb& everything);
@@ -41,7 +44,7 @@ double support_radius(const Model& model);
 /// Spacing of the water kernel, m.
 double water_smoothing_length(const Model& model);
 
-extern template Scene<2> build_scene<2>(const Model&, Diagnostics&);
-extern template Scene<3> build_scene<3>(const Model&, Diagnostics&);
+extern template Scene<2> build_scene<2>(const Model&, Diagnostics&, Filling);
+extern template Scene<3> build_scene<3>(const Model&, Diagnostics&, Filling);
 
 }  // namespace sphgeo

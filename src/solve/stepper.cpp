@@ -7,11 +7,14 @@
 namespace sphgeo {
 
 template <int Dim>
-void Stepper<Dim>::run(double end, const std::function<bool()>& at_safe_point) {
-  rearrange();                                           // line 7
-  while (at_safe_point() && world_.clock.time < end) {   // line 9
+bool Stepper<Dim>::run(double end, const RunHooks& hooks) {
+  for (;;) {
+    rearrange();                                         // lines 7, 28
+    if (!hooks.at_safe_point()) return false;
+    if (world_.clock.time >= end) return true;           // line 9
     advance();
-    rearrange();                                         // line 28
+    guard_.after_advection();
+    if (!hooks.before_rearranging()) return false;
   }
 }
 
@@ -32,10 +35,11 @@ void Stepper<Dim>::advance() {
   clock.dt_advection = plan_.limits().advection;
   const double start = clock.time;
   for (double left = clock.dt_advection; left > 0;) {    // line 14
-    const double longest = plan_.limits().acoustic;
+    const StepLimits limits = plan_.limits();
     // Line 15, with what is left divided evenly: no sliver of a step at the end.
-    const double steps = std::max(1.0, std::ceil(left / longest - 1e-9));
+    const double steps = std::max(1.0, std::ceil(left / limits.acoustic - 1e-9));
     const double dt = left / steps;
+    guard_.before_step(limits, dt);
     acoustic_step(dt);                                   // lines 16 to 25
     left = steps == 1 ? 0 : left - dt;
     clock.time = left == 0 ? start + clock.dt_advection : clock.time + dt;  // line 26
@@ -54,6 +58,22 @@ void Stepper<Dim>::acoustic_step(double dt) {
   ++world_.clock.acoustic_steps;
   for (const auto& set : world_.sets())
     if (set->phase() != "wall") particle_updates_ += static_cast<double>(set->size());
+}
+
+template <int Dim>
+void Stepper<Dim>::save(StateSink& sink) const {
+  sink.put_number("stepper/seconds_rearranging", seconds_rearranging_);
+  sink.put_number("stepper/particle_updates", particle_updates_);
+  sink.put_count("stepper/rearrangements", rearrangements_);
+  guard_.save(sink);
+}
+
+template <int Dim>
+void Stepper<Dim>::load(const StateSource& source) {
+  seconds_rearranging_ = source.number("stepper/seconds_rearranging");
+  particle_updates_ = source.number("stepper/particle_updates");
+  rearrangements_ = source.count("stepper/rearrangements");
+  guard_.load(source);
 }
 
 template class Stepper<2>;

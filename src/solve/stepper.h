@@ -4,17 +4,34 @@
 #include <functional>
 
 #include "plan/plan.h"
+#include "solve/guard.h"
 
 namespace sphgeo {
+
+/// What happens beside the steps. It looks and keeps; it changes nothing.
+struct RunHooks {
+  /// At the start and after every advection step, with lists and derived fields fresh. False: stop.
+  std::function<bool()> at_safe_point;
+  /// Between an advection step and the rearrangement that follows it: what the sets hold now is all that
+  /// the rest of the run depends on. False: stop before the rearrangement, as a resumed run begins with it.
+  std::function<bool()> before_rearranging = [] { return true; };
+};
 
 template <int Dim>
 class Stepper {
  public:
-  Stepper(World<Dim>& world, Plan<Dim>& plan) : world_(world), plan_(plan) {}
+  Stepper(World<Dim>& world, Plan<Dim>& plan) : world_(world), plan_(plan), guard_(world, plan) {}
 
-  /// Runs until the first safe point at or after `end` (s). `at_safe_point` is called at the start and
-  /// after every advection step, with lists and derived fields fresh; it returns false to stop.
-  void run(double end, const std::function<bool()>& at_safe_point);
+  /// Runs until the first safe point at or after `end` (s), or until a hook says stop; returns whether it
+  /// got to the end. Throws UnstableError when the guard stops it.
+  bool run(double end, const RunHooks& hooks);
+
+  Guard<Dim>& guard() { return guard_; }
+  const Guard<Dim>& guard() const { return guard_; }
+
+  /// The counters below and the guard's.
+  void save(StateSink& sink) const;
+  void load(const StateSource& source);
 
   double seconds_rearranging() const { return seconds_rearranging_; }
   long rearrangements() const { return rearrangements_; }
@@ -28,6 +45,7 @@ class Stepper {
 
   World<Dim>& world_;
   Plan<Dim>& plan_;
+  Guard<Dim> guard_;
   double seconds_rearranging_ = 0;
   double particle_updates_ = 0;
   long rearrangements_ = 0;

@@ -80,13 +80,16 @@ void World<Dim>::remove_lost(ParticleSet<Dim>& set) {
   };
   const double count = ordered_sum(set.size(), [&](Index i) { return outside(i) ? 1.0 : 0.0; });
   if (count == 0) return;
-  if (model_.numerics.outside == "stop") {
-    for (Index i = 0; i < set.size(); ++i)
-      if (outside(i)) {
-        const Vec3 at = to_space<Dim>(x[i]);
-        throw UnstableError(fmt::format("particle {} of set '{}' left the domain at ({:.4g}, {:.4g}, {:.4g}) m, t = {:.6g} s; "
-                                        "numerics.outside is 'stop'", set.ids()[i], set.name(), at.x(), at.y(), at.z(), clock.time));
-      }
+  for (Index i = 0; i < set.size(); ++i) {
+    if (!outside(i)) continue;
+    const bool lost = x[i].allFinite();  // what has no place at all has not left: it is broken
+    if (lost && model_.numerics.outside != "stop") continue;
+    const Vec3 at = to_space<Dim>(x[i]);
+    throw UnstableError(
+        lost ? fmt::format("particle {} of set '{}' left the domain at ({:.4g}, {:.4g}, {:.4g}) m, t = {:.6g} s; "
+                           "numerics.outside is 'stop'", set.ids()[i], set.name(), at.x(), at.y(), at.z(), clock.time)
+             : fmt::format("the position of particle {} of set '{}' is not finite at t = {:.6g} s", set.ids()[i], set.name(), clock.time),
+        {lost ? "lost" : "not_finite", "", set.name(), set.ids()[i], at, clock.time});
   }
   std::vector<std::uint32_t> keep;
   keep.reserve(static_cast<std::size_t>(set.size()));
@@ -143,6 +146,35 @@ std::size_t World<Dim>::bytes() const {
   for (const auto& [name, g] : grids_) sum += g.bytes();
   for (const auto& [key, l] : lists_) sum += l.bytes();
   return sum;
+}
+
+template <int Dim>
+void World<Dim>::save(StateSink& sink) const {
+  sink.put_number("clock/time", clock.time);
+  sink.put_number("clock/dt_acoustic", clock.dt_acoustic);
+  sink.put_number("clock/dt_advection", clock.dt_advection);
+  sink.put_count("clock/advection_steps", clock.advection_steps);
+  sink.put_count("clock/acoustic_steps", clock.acoustic_steps);
+  sink.put("domain/lo", std::span<const double>(lo_.data(), Dim));
+  sink.put("domain/hi", std::span<const double>(hi_.data(), Dim));
+  for (const auto& [name, n] : lost_) sink.put_count("lost/" + name, n);
+  for (const auto& s : sets_) s->save(sink);
+}
+
+template <int Dim>
+void World<Dim>::load(const StateSource& source) {
+  clock.time = source.number("clock/time");
+  clock.dt_acoustic = source.number("clock/dt_acoustic");
+  clock.dt_advection = source.number("clock/dt_advection");
+  clock.advection_steps = source.count("clock/advection_steps");
+  clock.acoustic_steps = source.count("clock/acoustic_steps");
+  Vec<Dim> lo, hi;
+  source.get("domain/lo", std::span<double>(lo.data(), Dim));
+  source.get("domain/hi", std::span<double>(hi.data(), Dim));
+  set_domain(lo, hi);
+  for (auto& [name, n] : lost_) n = source.count("lost/" + name);
+  for (auto& s : sets_) s->load(source);
+  grids_.clear();  // also those of sets at rest are to be built anew
 }
 
 template class World<2>;

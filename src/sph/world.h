@@ -90,8 +90,17 @@ class World {
   /// Particles that left the domain so far, by set.
   const std::map<std::string, Index>& lost() const { return lost_; }
 
+  /// Whether the particles of a set change place.
+  bool moves(const std::string& set) const { return moves_.at(set); }
+
   /// Memory of fields, records, grids and lists, bytes.
   std::size_t bytes() const;
+
+  /// Saves clocks, domain, lost particles and all sets; everything else is rebuilt by rearrange(). To be
+  /// called between an advection step and the rearrangement that follows it. load() needs the sets of the
+  /// same deck, with all fields that its plan asks for.
+  void save(StateSink& sink) const;
+  void load(const StateSource& source);
 
  private:
   void remove_lost(ParticleSet<Dim>& set);

@@ -111,8 +111,7 @@ class CommandLine(unittest.TestCase):
         (self.here / "notes" / "mine.txt").write_text("kept")
         self.accepted(*run, "notes")   # a folder with other files is no obstacle
         stamp = (self.here / "notes" / "resolved.yaml").read_text()
-        said = self.refused(2, ["holds results", "--overwrite"], *run, "notes")
-        self.assertNotIn("--resume", said)   # no such option yet
+        self.refused(2, ["holds results", "--overwrite", "--resume"], *run, "notes")
         self.accepted(*run, "notes", "--overwrite", "--set", "end_time=2 ms")
         self.assertNotEqual((self.here / "notes" / "resolved.yaml").read_text(), stamp)
         self.assertEqual((self.here / "notes" / "mine.txt").read_text(), "kept")

@@ -143,7 +143,7 @@ TEST_SUITE("effects") {
     const double weight = 9.81 * ordered_sum(m.size(), [&](Index i) { return m[i]; });
     double low = 1e9, high = 0, sum = 0;
     long n = 0;
-    rig.stepper->run(0.3, [&] {
+    rig.stepper->run(0.3, {[&] {
       if (rig.world.clock.time < 0.1) return true;
       const Vec<2> f = action_and_reaction(rig).second;
       low = std::min(low, -f[1] / weight);
@@ -152,7 +152,7 @@ TEST_SUITE("effects") {
       ++n;
       CHECK(std::abs(f[0]) < 0.05 * weight);
       return true;
-    });
+    }});
     INFO("force on the floor / weight: ", low, " to ", high, ", mean ", sum / static_cast<double>(n));
     CHECK(sum / static_cast<double>(n) == doctest::Approx(1).epsilon(0.01));
     CHECK(low > 0.97);

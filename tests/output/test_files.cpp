@@ -151,6 +151,23 @@ TEST_SUITE("output") {
     CHECK(fs::exists(run.summary()));
   }
 
+  TEST_CASE("a folder is held by one run, and goes away when it was made for nothing") {
+    const test::TemporaryFolder folder;
+    const std::string path = folder / "run";
+    {
+      const FolderLock held(path);
+      CHECK(fs::is_directory(path));
+      CHECK_THROWS_WITH_AS(FolderLock{path}, doctest::Contains("another run"), Error);
+    }
+    CHECK_FALSE(fs::exists(path));
+    fs::create_directory(path);
+    { const FolderLock held(path); }
+    CHECK(fs::exists(path));
+    { const FolderLock again(path); }
+    write_file_atomically(folder / "file", "x");
+    CHECK_THROWS_AS(FolderLock(folder / "file"), IoError);
+  }
+
   TEST_CASE("overwrite deletes what sphgeo wrote and nothing else") {
     const test::TemporaryFolder folder;
     const RunFolder run(folder / "run");

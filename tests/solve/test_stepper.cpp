@@ -62,10 +62,10 @@ std::vector<double> times_until(double end) {
   Rig<2> rig(block("[4 - 8*x, 0, 8*z - 4]"));
   rig.plan_it();
   std::vector<double> times;
-  rig.stepper->run(end, [&] {
+  rig.stepper->run(end, {[&] {
     times.push_back(rig.world.clock.time);
     return true;
-  });
+  }});
   return times;
 }
 
@@ -129,7 +129,7 @@ TEST_SUITE("solve") {
   TEST_CASE("a run stops where it is told to") {
     Rig<2> rig(block("[1, 0, 0]"));
     rig.plan_it();
-    rig.stepper->run(1, [&] { return rig.world.clock.advection_steps < 4; });
+    CHECK_FALSE(rig.stepper->run(1, {[&] { return rig.world.clock.advection_steps < 4; }}));
     CHECK(rig.world.clock.advection_steps == 4);
   }
 
@@ -153,15 +153,5 @@ TEST_SUITE("solve") {
     // a falling block does not have. A tenth of a spacing and 5 % of the speed were measured.
     CHECK(off < 0.2 * 0.1);
     CHECK(off_speed < 0.1 * 9.81 * t);
-  }
-
-  TEST_CASE("water faster than sound stops the run and is named") {
-    Rig<2> rig(block("[25*x, 0, 0]"));
-    rig.plan_it();
-    CHECK_THROWS_WITH_AS(rig.advance(1), doctest::Contains("not below the sound speed"), UnstableError);
-    Rig<2> nan(block("[0, 0, 0]"));
-    nan.plan_it();
-    nan.water().vector(fields::velocity)[7][1] = std::nan("");
-    CHECK_THROWS_AS(nan.advance(1), UnstableError);
   }
 }

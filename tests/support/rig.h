@@ -84,11 +84,11 @@ struct Rig {
   /// Runs this many advection steps.
   void advance(long steps) {
     long left = steps;
-    stepper->run(1e9, [&] { return left-- > 0; });
+    stepper->run(1e9, {[&] { return left-- > 0; }});
   }
   /// Runs advection steps until at least so many acoustic steps are done.
   void advance_acoustic(long steps) {
-    stepper->run(1e9, [&] { return world.clock.acoustic_steps < steps; });
+    stepper->run(1e9, {[&] { return world.clock.acoustic_steps < steps; }});
   }
 
   /// The current values of probe k of the deck.

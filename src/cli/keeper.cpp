@@ -1,0 +1,66 @@
+#include "cli/keeper.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "cli/commands.h"
+#include "core/error.h"
+
+namespace sphgeo {
+
+template <int Dim>
+Keeper<Dim>::Keeper(RunParts<Dim> parts, const RunFolder& folder, double wall_before)
+    : parts_(parts), folder_(folder), wall_before_(wall_before) {}
+
+template <int Dim>
+void Keeper<Dim>::keep_if_due(double wall_seconds) {
+  // Fifty times what the last one took: checkpoints never cost more than 2 % of a run.
+  const double interval = std::max(parts_.world.model().output.checkpoint_every, 50 * last_seconds_);
+  if (wall_seconds - written_at_ >= interval) keep(wall_seconds);
+}
+
+template <int Dim>
+void Keeper<Dim>::keep(double wall_seconds) {
+  const auto start = std::chrono::steady_clock::now();
+  parts_.stepper.guard().check_all();
+  const Model& model = parts_.world.model();
+  std::size_t expected = 0;
+  for (const auto& set : parts_.world.sets())
+    for (const auto& [name, field] : set->fields())
+      if (field->spec().lifetime != Lifetime::derived) expected += field->value_bytes();
+  CheckpointWriter file(expected);
+  file.put_text("version", version());
+  file.put_text("deck/decisive", decisive_yaml(model));
+  file.put_text("deck/resolved", resolved_yaml(model));
+  file.put_count("dimension", Dim);
+  file.put_number("wall_seconds", wall_before_ + wall_seconds);
+  parts_.world.save(file);
+  parts_.stepper.save(file);
+  parts_.plan.save(file);
+  parts_.recorder.save(file);
+  bytes_ = file.write(folder_.checkpoint(), folder_.previous_checkpoint());
+  last_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  seconds_ += last_seconds_;
+  ++count_;
+  written_at_ = wall_seconds + last_seconds_;
+}
+
+void require_same_deck(const Model& model, const CheckpointReader& checkpoint) {
+  const std::string there = checkpoint.text("deck/decisive"), here = decisive_yaml(model);
+  if (there == here) return;
+  Diagnostics found;
+  const std::vector<std::string> keys = differing_keys(there, here);
+  for (std::size_t k = 0; k < std::min<std::size_t>(keys.size(), 20); ++k) {
+    const std::string path = keys[k].substr(0, keys[k].find(": "));
+    found.error("E130", model.place_of(path), path, "this key may not change when a run goes on: " + keys[k],
+                "set it back, or start anew in another folder");
+  }
+  throw DeckError(found);
+}
+
+template class Keeper<2>;
+template class Keeper<3>;
+
+}  // namespace sphgeo
