@@ -70,6 +70,21 @@ struct Tank final : WallBoundary {
     return a;
   }
 
+  /// Towards the inside; on the rim of an open face towards that face, so that water which jumps onto the
+  /// rim lies on it and is not drawn through the wall.
+  Vec3 normal_at(const Vec3& x, const Vec3& inner, int dimension) const {
+    double nearest = (inner - x).norm();
+    Vec3 normal = (inner - x) / nearest;
+    for (const Face& f : faces) {
+      if (!is_open(f.axis, f.high) || (dimension == 2 && f.axis == 1)) continue;
+      const double depth = f.high ? max[f.axis] - x[f.axis] : x[f.axis] - min[f.axis];
+      if (depth >= nearest) continue;
+      nearest = depth;
+      normal = Vec3::Unit(f.axis) * (f.high ? 1.0 : -1.0);
+    }
+    return normal;
+  }
+
   std::vector<WallPoint> points(const Placement& p) const override {
     const Axis ax = axis(0, p), ay = axis(1, p), az = axis(2, p);
     std::vector<WallPoint> wall;
@@ -80,7 +95,7 @@ struct Tank final : WallBoundary {
           const Vec3 x(ax.at[i], ay.at[j], az.at[k]);
           Vec3 inner = x.cwiseMax(min).cwiseMin(max);
           if (p.dimension == 2) inner.y() = 0;
-          wall.push_back({x, (inner - x).normalized()});
+          wall.push_back({x, normal_at(x, inner, p.dimension)});
         }
     return wall;
   }

@@ -129,9 +129,10 @@ Schema<Expect> Expect::schema() {
   s.required("name", &Expect::name, unit::none, "the name of the result");
   s.required("probe", &Expect::probe, unit::none, "a probe, or one of its columns as probe.column");
   s.optional("reduce", &Expect::reduce, unit::none,
-             "how the column becomes one number; curve: compared with reference_csv as a whole")
-      .choices({"last", "first", "min", "max", "mean", "rms", "range", "time_of_min", "time_of_max",
-                "period", "frequency", "slope", "at", "curve"});
+             "how the column becomes one number; growth: its largest rise above any earlier value; "
+             "curve: compared with reference_csv as a whole")
+      .choices({"last", "first", "min", "max", "max_abs", "mean", "rms", "range", "growth",
+                "time_of_min", "time_of_max", "period", "frequency", "slope", "at", "curve"});
   s.optional("at", &Expect::at, unit::time, "the time of the value, for reduce: at").at_least(0);
   s.optional("from", &Expect::from, unit::time, "start of the time window; auto: the first sample");
   s.optional("to", &Expect::to, unit::time, "end of the time window; auto: the last sample");

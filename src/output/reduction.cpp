@@ -12,9 +12,9 @@ namespace sphgeo {
 
 namespace {
 
-constexpr std::array<std::string_view, 14> names = {
-    "last",  "first",       "min",         "max",    "max_abs",   "mean",  "rms",
-    "range", "time_of_max", "time_of_min", "period", "frequency", "slope", "at"};
+constexpr std::array<std::string_view, 15> names = {
+    "last",  "first",  "min",         "max",         "max_abs", "mean",      "rms",
+    "range", "growth", "time_of_max", "time_of_min", "period",  "frequency", "slope", "at"};
 
 /// The integral over time of a quadratic form of the piecewise linear curve, by the span of time.
 /// `piece(a, b)` is the mean of the form over one piece with the end values a and b.
@@ -25,6 +25,16 @@ double mean_of(const Samples& s, Piece piece) {
     integral += (s.t[i] - s.t[i - 1]) * piece(s.y[i - 1], s.y[i]);
   const double span = s.t.back() - s.t.front();
   return span > 0 ? integral / span : piece(s.y.back(), s.y.back());
+}
+
+/// The largest rise above the lowest value that came before.
+double growth(const Samples& s) {
+  double lowest = s.y.front(), most = 0;
+  for (const double y : s.y) {
+    lowest = std::min(lowest, y);
+    most = std::max(most, y - lowest);
+  }
+  return most;
 }
 
 /// Slope of the least-squares line.
@@ -92,6 +102,7 @@ std::optional<double> reduce(const Samples& s, std::string_view name, std::optio
   if (name == "max") return *highest;
   if (name == "max_abs") return std::max(std::abs(*lowest), std::abs(*highest));
   if (name == "range") return *highest - *lowest;
+  if (name == "growth") return growth(s);
   if (name == "time_of_max") return s.t[static_cast<std::size_t>(highest - s.y.begin())];
   if (name == "time_of_min") return s.t[static_cast<std::size_t>(lowest - s.y.begin())];
   if (name == "mean") return mean_of(s, [](double a, double b) { return 0.5 * (a + b); });

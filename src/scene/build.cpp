@@ -10,6 +10,7 @@
 #include "geometry/fill.h"
 #include "geometry/relax_fill.h"
 #include "materials/water.h"
+#include "scene/join_walls.h"
 
 namespace sphgeo {
 
@@ -115,9 +116,15 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill) {
     set.require(*f);
   if (fill == Filling::none) return;
   const Placement placement{dp, support_radius(model), Dim};
+  std::vector<WallPart> parts;
+  for (const auto& boundary : model.boundaries) {
+    const auto& wall = dynamic_cast<const WallBoundary&>(*boundary);
+    parts.push_back({wall.points(placement), wall.solid(placement), !wall.motion});
+  }
+  join_walls<Dim>(parts, dp, support_radius(model));
   for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
     const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
-    const std::vector<WallPoint> points = wall.points(placement);
+    const std::vector<WallPoint>& points = parts[b].points;
     const Index first = set.size();
     set.resize(first + static_cast<Index>(points.size()));
     scene.boundary_particles.emplace_back(wall.name, static_cast<Index>(points.size()));

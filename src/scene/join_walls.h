@@ -1,0 +1,27 @@
+#pragma once
+// Boundaries that touch or overlap become one wall.
+
+#include <memory>
+#include <vector>
+
+#include "boundaries/boundary.h"
+
+namespace sphgeo {
+
+/// The particles of one boundary, and its solid (null: it has none, and takes no part).
+struct WallPart {
+  std::vector<WallPoint> points;
+  std::shared_ptr<const Shape> solid;
+  bool rests = true;  ///< only boundaries at rest are joined: the others part again
+};
+
+/// Of particles where solids overlap, keeps those of the first boundary: a place that is filled twice pulls
+/// twice. Normals that would point into another solid, as at the foot of a step that stands on a floor, are
+/// turned towards the nearest surface that the fluid can reach; spacing dp and reach of the kernel in m.
+template <int Dim>
+void join_walls(std::vector<WallPart>& parts, double dp, double reach);
+
+extern template void join_walls<2>(std::vector<WallPart>&, double, double);
+extern template void join_walls<3>(std::vector<WallPart>&, double, double);
+
+}  // namespace sphgeo
