@@ -16,7 +16,7 @@ void pack_walls(World<Dim>& world) {
   const ParticleSet<Dim>& walls = world.set("walls");
   const double volume = std::pow(walls.spacing(), Dim);
   const auto& v = walls.vector(fields::velocity);
-  const auto& a = walls.vector(fields::acceleration);
+  const auto* a = walls.has(fields::acceleration) ? &walls.vector(fields::acceleration) : nullptr;  // null: at rest
   const auto& n = walls.vector(fields::normal);
   const auto& no_slip = walls.scalar(fields::no_slip);
   const auto& x = walls.vector(fields::position);
@@ -30,7 +30,7 @@ void pack_walls(World<Dim>& world) {
       one[wall_slot::volume] = static_cast<T>(volume);
       one[wall_slot::no_slip] = static_cast<T>(no_slip[i]);
       const Vec<Dim> g = world.pull(x[i]);
-      two[wall_slot::push] = static_cast<T>(std::max(0.0, (a[i] - g).dot(n[i])));
+      two[wall_slot::push] = static_cast<T>(std::max(0.0, (a ? Vec<Dim>((*a)[i] - g) : Vec<Dim>(-g)).dot(n[i])));
       two[wall_slot::weight] = static_cast<T>(-g.dot(n[i]));
       for (int k = 0; k < Dim; ++k) {
         one[wall_slot::velocity + k] = static_cast<T>(v[i][k]);

@@ -13,28 +13,39 @@ class WallState final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("walls")) return {"there are no walls"};
-    return {std::make_unique<WallState>(), "there are walls"};
+    return {std::make_unique<WallState>(world.moves("walls")), "there are walls"};
   }
+
+  explicit WallState(bool moves) : moves_(moves) {}
 
   std::string acts_on() const override { return "walls"; }
   Needs needs() const override {
-    return {{{"walls", &fields::volume, Access::write},
+    Needs n{{{"walls", &fields::volume, Access::write},
              {"walls", &fields::velocity, Access::read},
-             {"walls", &fields::acceleration, Access::read},
              {"walls", &fields::normal, Access::read},
              {"walls", &fields::no_slip, Access::read}},
             {}};
+    if (moves_) n.fields.push_back({"walls", &fields::acceleration, Access::read});
+    return n;
   }
   void prepare(World<Dim>& world) override {
     world.records("walls", 0);
     world.records("walls", 1);
   }
   void apply(World<Dim>& world) override {
+    // What rests, under a pull that rests, is packed once.
+    if (packed_ && !moves_ && !world.model().body_force) return;
     ParticleSet<Dim>& walls = world.set("walls");
     auto& volume = walls.scalar(fields::volume);
-    for (Index i = 0; i < walls.size(); ++i) volume[i] = std::pow(walls.spacing(), Dim);
+    const double each = std::pow(walls.spacing(), Dim);
+    parallel_for(walls.size(), [&](Index i) { volume[i] = each; });
     pack_walls(world);
+    packed_ = true;
   }
+
+ private:
+  bool moves_;
+  bool packed_ = false;
 };
 
 const RegisterEffect<WallState> registered;

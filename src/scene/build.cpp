@@ -112,8 +112,9 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill) {
   }
   const double dp = model.resolution;
   ParticleSet<Dim>& set = scene.world->add_set("walls", "wall", dp, water_smoothing_length(model), moves);
-  for (const FieldSpec* f : {&fields::acceleration, &fields::normal, &fields::reference_position, &fields::reference_normal, &fields::no_slip})
-    set.require(*f);
+  for (const FieldSpec* f : {&fields::normal, &fields::no_slip}) set.require(*f);
+  if (moves)
+    for (const FieldSpec* f : {&fields::acceleration, &fields::reference_position, &fields::reference_normal}) set.require(*f);
   if (fill == Filling::none) return;
   const Placement placement{dp, support_radius(model), Dim};
   std::vector<WallPart> parts;
@@ -132,8 +133,10 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill) {
       const Index i = first + static_cast<Index>(k);
       set.ids()[i] = static_cast<Id>(i);
       set.tag(fields::part)[i] = static_cast<std::int32_t>(b);
-      set.vector(fields::reference_position)[i] = to_scene<Dim>(points[k].position);
-      set.vector(fields::reference_normal)[i] = to_scene<Dim>(points[k].normal);
+      if (moves) {
+        set.vector(fields::reference_position)[i] = to_scene<Dim>(points[k].position);
+        set.vector(fields::reference_normal)[i] = to_scene<Dim>(points[k].normal);
+      }
       set.vector(fields::position)[i] = to_scene<Dim>(wall.motion ? wall.motion->position(points[k].position, 0) : points[k].position);
       set.vector(fields::normal)[i] = to_scene<Dim>(wall.motion ? wall.motion->direction(points[k].normal, 0) : points[k].normal);
       set.scalar(fields::no_slip)[i] = wall.slip_kind() == Slip::no_slip ? 1.0 : 0.0;

@@ -14,8 +14,9 @@ namespace sphgeo {
 
 /// Checks: every acoustic step, the speed against the speed of sound (which a value that is no number
 /// anywhere in the sums reaches within the same step) and the size of the step; every advection step, all
-/// saved fields for values that are not finite, the bounds that the effects declare (density, volume
-/// fraction), and lost particles; every 16th, particles that sit inside a wall. All throw UnstableError.
+/// saved fields of sets that move for values that are not finite, the bounds that the effects declare
+/// (density, volume fraction), and lost particles; every 16th and before a checkpoint, also sets at rest
+/// (whose values nobody reads again) and particles that sit inside a wall. All throw UnstableError.
 template <int Dim>
 class Guard {
  public:
@@ -38,7 +39,7 @@ class Guard {
 
  private:
   void check_speed(const StepLimits& limits);
-  void check_fields();
+  void check_fields(bool at_rest_too);
   void check_bounds();
   void check_lost();
   void count_penetrations();

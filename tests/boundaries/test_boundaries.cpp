@@ -81,7 +81,11 @@ TEST_SUITE("boundaries") {
     const auto points = wall_of(m).points(placement(3));
     CHECK(points.size() == 13 * 8 * 7 - 5 * 4 * 3);
     CHECK(near(at(points, {0.25, 0.45, 0.15}).normal, {0, -1, 0}));
-    CHECK(near(at(points, {0.25, 0.25, -0.35}).normal, {0, 0, 1}));
+    CHECK(near(at(points, {0.25, 0.25, -0.15}).normal, {0, 0, 1}));
+    // Nearer to an open face than to the inside: the rim, which faces what may land on it.
+    CHECK(near(at(points, {0.25, 0.25, -0.35}).normal, {0, -1, 0}));
+    CHECK(near(at(points, {-0.35, 0.35, 0.25}).normal, {0, 0, 1}));
+    CHECK(near(at(points, {-0.05, 0.25, 0.05}).normal, {1, 0, 0}));
     CHECK(near(at(points, {-0.05, 0.45, -0.05}).normal, Vec3(1, -1, 1).normalized()));
     for (const WallPoint& p : points) CHECK(p.position.y() > 0);
   }
