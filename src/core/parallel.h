@@ -2,10 +2,7 @@
 // Parallel loops whose results do not depend on the number of threads: work is cut into blocks of
 // fixed size, and whatever is summed is summed per block, then in block order.
 
-#include <omp.h>
-
 #include <algorithm>
-#include <exception>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -19,32 +16,27 @@ namespace sphgeo {
 inline constexpr int block_size = 256;
 
 /// Sets the number of threads of all later loops (at least 1).
-inline void set_threads(int n) { omp_set_num_threads(std::max(n, 1)); }
+void set_threads(int n);
 
-/// Number of threads that the next loop uses.
-inline int threads() { return omp_get_max_threads(); }
+/// Number of threads that the next loop uses: all processors, unless set_threads says otherwise.
+int threads();
+
+namespace detail {
+
+/// Calls call(context, b) for all b in [0, blocks), in several threads.
+void run_blocks(Index blocks, void (*call)(const void* context, Index b), const void* context);
+
+}  // namespace detail
 
 /// Calls f(begin, end, block_index) for blocks of `block` items that cover [0, n). Blocks run in any
-/// order and at the same time; f may write only what belongs to its block. If blocks throw, all
-/// others still run and the exception of the first block (in block order) is rethrown.
+/// order and at the same time; f may write only what belongs to its block. A loop inside of f runs in
+/// the thread of f. If blocks throw, all others still run and the exception of the first block (in
+/// block order) is rethrown.
 template <class F>
 void parallel_blocks(Index n, int block, F&& f) {
-  const Index blocks = (n + block - 1) / block;
-  std::exception_ptr failure;
-  Index failed_block = blocks;
-#pragma omp parallel for schedule(dynamic) if (blocks > 1)
-  for (Index b = 0; b < blocks; ++b) {
-    try {
-      f(b * block, std::min<Index>(n, (b + 1) * block), b);
-    } catch (...) {
-#pragma omp critical(sphgeo_parallel_failure)
-      if (b < failed_block) {
-        failed_block = b;
-        failure = std::current_exception();
-      }
-    }
-  }
-  if (failure) std::rethrow_exception(failure);
+  const auto one = [&](Index b) { f(b * block, std::min<Index>(n, (b + 1) * block), b); };
+  detail::run_blocks((n + block - 1) / block,
+                     [](const void* loop, Index b) { (*static_cast<decltype(&one)>(loop))(b); }, &one);
 }
 
 /// Calls f(i) for all i in [0, n), in parallel blocks.
@@ -54,6 +46,11 @@ void parallel_for(Index n, F&& f) {
     for (Index i = begin; i < end; ++i) f(i);
   });
 }
+
+/// The larger; NaN if either is NaN, so that a guard sees it.
+inline double max_or_nan(double a, double b) { return b > a || b != b ? b : a; }
+/// The smaller; NaN if either is NaN.
+inline double min_or_nan(double a, double b) { return b < a || b != b ? b : a; }
 
 namespace detail {
 
@@ -72,15 +69,13 @@ struct SumType<R, std::void_t<typename R::PlainObject>> {
 template <class F, class Better>
 double block_extreme(Index n, double start, F& f, Better better) {
   std::vector<double> part(static_cast<std::size_t>((n + block_size - 1) / block_size), start);
-  // A NaN counts as better than anything and stays, so that a guard sees it.
-  const auto take = [&](double a, double b) { return (better(b, a) || b != b) ? b : a; };
   parallel_blocks(n, block_size, [&](Index begin, Index end, Index b) {
     double best = start;
-    for (Index i = begin; i < end; ++i) best = take(best, f(i));
+    for (Index i = begin; i < end; ++i) best = better(best, f(i));
     part[static_cast<std::size_t>(b)] = best;
   });
   double best = start;
-  for (const double v : part) best = take(best, v);
+  for (const double v : part) best = better(best, v);
   return best;
 }
 
@@ -106,13 +101,13 @@ auto ordered_sum(Index n, F&& f) {
 /// Largest f(i) over [0, n), `start` if n = 0 or all are smaller; NaN if any f(i) is NaN.
 template <class F>
 double block_max(Index n, F&& f, double start = -std::numeric_limits<double>::infinity()) {
-  return detail::block_extreme(n, start, f, [](double a, double b) { return a > b; });
+  return detail::block_extreme(n, start, f, max_or_nan);
 }
 
 /// Smallest f(i) over [0, n), `start` if n = 0 or all are larger; NaN if any f(i) is NaN.
 template <class F>
 double block_min(Index n, F&& f, double start = std::numeric_limits<double>::infinity()) {
-  return detail::block_extreme(n, start, f, [](double a, double b) { return a < b; });
+  return detail::block_extreme(n, start, f, min_or_nan);
 }
 
 }  // namespace sphgeo

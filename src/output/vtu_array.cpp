@@ -1,6 +1,8 @@
 #include "output/vtu_array.h"
 
-#include <stdexcept>
+#include <new>
+
+#include "core/parallel.h"
 
 namespace sphgeo {
 
@@ -43,10 +45,8 @@ std::uint64_t VtuArray::bytes() const {
 
 void VtuArray::deflate_blocks() {
   deflated_.resize(static_cast<std::size_t>(blocks()));
-  bool failed = false;
   // Blocks are independent, so the bytes do not depend on the number of threads.
-#pragma omp parallel for schedule(dynamic) reduction(|| : failed)
-  for (Index b = 0; b < blocks(); ++b) {
+  parallel_blocks(blocks(), 1, [&](Index b, Index, Index) {
     std::vector<unsigned char> raw(static_cast<std::size_t>(block_bytes));
     const Index n = values_in(b);
     fill_(b * values_per_block(), n, raw.data());
@@ -54,12 +54,11 @@ void VtuArray::deflate_blocks() {
     uLongf out_size = compressBound(size);
     std::string& out = deflated_[static_cast<std::size_t>(b)];
     out.resize(out_size);
-    failed = failed || compress2(reinterpret_cast<Bytef*>(out.data()), &out_size, raw.data(), size,
-                                 Z_BEST_SPEED) != Z_OK;
+    if (compress2(reinterpret_cast<Bytef*>(out.data()), &out_size, raw.data(), size, Z_BEST_SPEED) != Z_OK)
+      throw std::bad_alloc();  // the only way in which it fails here
     out.resize(out_size);
     out.shrink_to_fit();
-  }
-  if (failed) throw std::bad_alloc();  // the only way in which compress2 fails here
+  });
 }
 
 void VtuArray::write_block_sizes(AtomicFile& file) const {

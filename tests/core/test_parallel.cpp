@@ -2,10 +2,13 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "core/hash.h"
@@ -57,6 +60,54 @@ TEST_SUITE("core") {
       CHECK(caught == "17");
       CHECK(ran == 100);
     }
+  }
+
+  TEST_CASE("a loop within a loop runs all its blocks in the thread at hand") {
+    const ThreadsAtEnd restore;
+    for (const int n_threads : {1, 4}) {
+      set_threads(n_threads);
+      std::vector<int> seen(40 * 30, 0);
+      std::atomic<int> strangers = 0;
+      parallel_blocks(40, 1, [&](Index a, Index, Index) {
+        const auto self = std::this_thread::get_id();
+        parallel_blocks(30, 1, [&](Index b, Index, Index) {
+          if (std::this_thread::get_id() != self) ++strangers;
+          ++seen[static_cast<std::size_t>(30 * a + b)];
+        });
+      });
+      CHECK(strangers == 0);
+      CHECK(std::count(seen.begin(), seen.end(), 1) == static_cast<long>(seen.size()));
+    }
+  }
+
+  TEST_CASE("many short loops, with changing numbers of threads and pauses, lose no block") {
+    const ThreadsAtEnd restore;
+    long total = 0;
+    std::vector<long> count(50);
+    for (int k = 0; k < 3000; ++k) {
+      set_threads(1 + k % 5);
+      if (k % 500 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      const Index n = k % 50;
+      total += n;
+      parallel_blocks(n, 1, [&](Index b, Index, Index) { ++count[static_cast<std::size_t>(b)]; });
+    }
+    long sum = 0;
+    for (const long c : count) sum += c;
+    CHECK(sum == total);
+  }
+
+  TEST_CASE("several threads take part in a loop") {
+    const ThreadsAtEnd restore;
+    set_threads(3);
+    // Every block waits until three threads have come.
+    std::atomic<int> here = 0;
+    parallel_blocks(3, 1, [&](Index, Index, Index) {
+      ++here;
+      const auto start = std::chrono::steady_clock::now();
+      while (here < 3 && std::chrono::steady_clock::now() - start < std::chrono::seconds(20))
+        std::this_thread::yield();
+    });
+    CHECK(here == 3);
   }
 
   TEST_CASE("ordered_sum has the same bits for any number of threads") {
