@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,9 @@ class FieldBase {
   virtual ~FieldBase() = default;
   const FieldSpec& spec() const { return *spec_; }
   virtual void resize(Index n) = 0;
-  /// New element k is old element order[k]; order may be shorter than the field.
-  virtual void permute(const std::vector<std::uint32_t>& order) = 0;
+  /// New element k is old element order[k]; order may be shorter than the field. `spare` is a field
+  /// of the same type: it lends its memory, and what it holds afterwards is rubbish.
+  virtual void permute(std::span<const std::uint32_t> order, FieldBase& spare) = 0;
   virtual std::size_t bytes() const = 0;
   /// Memory of the values alone, as a checkpoint holds them.
   virtual std::size_t value_bytes() const = 0;
@@ -61,8 +63,8 @@ class Field final : public FieldBase {
   const T* data() const { return values_.data(); }
 
   void resize(Index n) override { values_.resize(static_cast<std::size_t>(n), zero()); }
-  void permute(const std::vector<std::uint32_t>& order) override;
-  std::size_t bytes() const override { return (values_.capacity() + spare_.capacity()) * sizeof(T); }
+  void permute(std::span<const std::uint32_t> order, FieldBase& spare) override;
+  std::size_t bytes() const override { return values_.capacity() * sizeof(T); }
   std::size_t value_bytes() const override { return values_.size() * sizeof(T); }
   void save(StateSink& sink, const std::string& name) const override;
   void load(const StateSource& source, const std::string& name) override;
@@ -74,7 +76,6 @@ class Field final : public FieldBase {
     else return T::Zero();
   }
   std::vector<T> values_;
-  std::vector<T> spare_;  // second buffer of the permutation, kept to avoid allocating at every sort
 };
 
 }  // namespace sphgeo

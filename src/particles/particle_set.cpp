@@ -9,12 +9,13 @@
 namespace sphgeo {
 
 template <class T>
-void Field<T>::permute(const std::vector<std::uint32_t>& order) {
-  spare_.resize(order.size(), zero());
+void Field<T>::permute(std::span<const std::uint32_t> order, FieldBase& spare) {
+  std::vector<T>& to = static_cast<Field<T>&>(spare).values_;
+  to.resize(order.size(), zero());
   parallel_for(static_cast<Index>(order.size()), [&](Index k) {
-    spare_[static_cast<std::size_t>(k)] = values_[order[static_cast<std::size_t>(k)]];
+    to[static_cast<std::size_t>(k)] = values_[order[static_cast<std::size_t>(k)]];
   });
-  values_.swap(spare_);
+  values_.swap(to);
 }
 
 namespace {
@@ -29,6 +30,17 @@ auto numbers_of(T* values, Index n) {
     using Number = std::conditional_t<std::is_const_v<T>, const double, double>;
     return std::span<Number>(count > 0 ? values->data() : nullptr, count * components);
   }
+}
+
+template <int Dim>
+std::unique_ptr<FieldBase> make_field(const FieldSpec& spec) {
+  switch (spec.type) {
+    case FieldType::scalar: return std::make_unique<Field<double>>(spec);
+    case FieldType::vector: return std::make_unique<Field<Vec<Dim>>>(spec);
+    case FieldType::tag: return std::make_unique<Field<std::int32_t>>(spec);
+    case FieldType::identity: return std::make_unique<Field<Id>>(spec);
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -95,12 +107,7 @@ template <int Dim>
 FieldBase& ParticleSet<Dim>::require(const FieldSpec& spec) {
   auto& slot = fields_[spec.name];
   if (!slot) {
-    switch (spec.type) {
-      case FieldType::scalar: slot = std::make_unique<Field<double>>(spec); break;
-      case FieldType::vector: slot = std::make_unique<Field<Vec<Dim>>>(spec); break;
-      case FieldType::tag: slot = std::make_unique<Field<std::int32_t>>(spec); break;
-      case FieldType::identity: slot = std::make_unique<Field<Id>>(spec); break;
-    }
+    slot = make_field<Dim>(spec);
     slot->resize(size_);
   }
   return *slot;
@@ -120,15 +127,20 @@ void ParticleSet<Dim>::resize(Index n) {
 }
 
 template <int Dim>
-void ParticleSet<Dim>::permute(const std::vector<std::uint32_t>& order) {
+void ParticleSet<Dim>::permute(std::span<const std::uint32_t> order) {
   size_ = static_cast<Index>(order.size());
-  for (auto& [name, field] : fields_) field->permute(order);
+  for (auto& [name, field] : fields_) {
+    auto& spare = spares_[field->spec().type];
+    if (!spare) spare = make_field<Dim>(field->spec());
+    field->permute(order, *spare);
+  }
 }
 
 template <int Dim>
 std::size_t ParticleSet<Dim>::bytes() const {
   std::size_t sum = 0;
   for (const auto& [name, field] : fields_) sum += field->bytes();
+  for (const auto& [type, spare] : spares_) sum += spare->bytes();
   return sum;
 }
 

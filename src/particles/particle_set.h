@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -47,7 +48,8 @@ class ParticleSet {
 
   void resize(Index n);
   /// New particle k is old particle order[k]; a shorter order removes the particles it leaves out.
-  void permute(const std::vector<std::uint32_t>& order);
+  void permute(std::span<const std::uint32_t> order);
+  /// Memory of all fields and of the spare ones [bytes].
   std::size_t bytes() const;
 
   /// Saves what does not follow from the deck: state and reference fields of all particles. load()
@@ -69,6 +71,8 @@ class ParticleSet {
   Index size_ = 0;
   std::map<std::string, double> constants_;
   std::map<std::string, std::unique_ptr<FieldBase>> fields_;
+  // One per type of field: sorting changes places with it, and allocates nothing.
+  std::map<FieldType, std::unique_ptr<FieldBase>> spares_;
 };
 
 extern template class ParticleSet<2>;

@@ -97,6 +97,15 @@ std::uint32_t* select_near(const Candidates<Dim>& candidates, const float* at, f
   return out;
 }
 
+// Gives back memory that the next search will not need either, if it is much; `used` entries are kept.
+void fit(AlignedVector<std::uint32_t>& entries, std::size_t used, std::size_t needed) {
+  if (entries.capacity() <= needed + needed / 8) return;
+  AlignedVector<std::uint32_t> fitted;
+  fitted.resize(needed + needed / 32);
+  std::copy_n(entries.begin(), used, fitted.begin());
+  entries.swap(fitted);
+}
+
 template <int Dim>
 void search_block(std::span<const Vec<Dim>> targets, const CellGrid<Dim>& sources,
                   const Scale& scale, Pairing pairing, Index begin, Index end,
@@ -116,7 +125,7 @@ void search_block(std::span<const Vec<Dim>> targets, const CellGrid<Dim>& source
   block.targets.clear();
   block.begin.clear();
   block.count.clear();
-  std::size_t used = 0;
+  std::size_t used = 0, most_candidates = 0;
   Candidates<Dim> candidates;
   for (std::size_t group = 0; group < count;) {
     std::array<std::int32_t, Dim> lo = position[group], hi = lo;
@@ -134,6 +143,7 @@ void search_block(std::span<const Vec<Dim>> targets, const CellGrid<Dim>& source
       hi = new_hi;
     }
     candidates.collect(sources, lo.data(), hi.data(), scale);
+    most_candidates = std::max(most_candidates, candidates.size);
 
     for (; group < group_end; ++group) {
       const auto i = static_cast<std::uint32_t>(begin) + static_cast<std::uint32_t>(group);
@@ -141,7 +151,7 @@ void search_block(std::span<const Vec<Dim>> targets, const CellGrid<Dim>& source
       for (std::size_t d = 0; d < Dim; ++d)
         at[d] = static_cast<float>((position[group][d] >> scale.shift) - candidates.corner[d]);
       if (const std::size_t need = used + candidates.size + slack; need > block.entries.size())
-        block.entries.resize(need + need / 4);
+        block.entries.resize(need + need / 2);
       std::uint32_t* first = block.entries.data() + used;
       const std::uint32_t* last = select_near<Dim>(
           candidates, at, scale.limit,
@@ -155,6 +165,7 @@ void search_block(std::span<const Vec<Dim>> targets, const CellGrid<Dim>& source
       while (used % NeighborList::padding != 0) block.entries[used++] = null_offset;
     }
   }
+  fit(block.entries, used, used + most_candidates + slack);
 }
 
 }  // namespace
