@@ -32,12 +32,13 @@ struct MomentumPair {
   }
 };
 
-/// Momentum of the water: pressure by the Riemann flux, and viscosity (Eq. 60 with n^w = 1).
+/// Momentum of the water: gravity, pressure by the Riemann flux, and viscosity (Eq. 60 with n^w = 1).
+/// It sets the sum of accelerations to which all other forces on the water are added.
 template <int Dim>
 class WaterMomentum final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"water_momentum", Stage::force, "Eqs. 60-63", "pressure (Riemann) and viscosity between water particles", false};
+    return {"water_momentum", Stage::force, "Eqs. 60-63", "gravity, pressure (Riemann) and viscosity between water particles", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     const ParticleSet<Dim>* water = world.find("water");
@@ -49,7 +50,7 @@ class WaterMomentum final : public Effect<Dim> {
   std::string acts_on() const override { return "water"; }
   Needs needs() const override {
     return {{{"water", &fields::density, Access::read}, {"water", &fields::pressure, Access::read},
-             {"water", &fields::acceleration_sum, Access::add}},
+             {"water", &fields::acceleration_sum, Access::write}},
             {{"water", "water"}}};
   }
 
@@ -70,12 +71,13 @@ class WaterMomentum final : public Effect<Dim> {
     using Pair = MomentumPair<Dim, Viscous>;
     const WaterConstants w = WaterConstants::of(world);
     const double h = world.set("water").smoothing_length();
+    const Vec<Dim> g = world.gravity();
     const Pair pair{Kernel<Dim>(h), RiemannFlux(w), 2 * w.viscosity, 0.01 * h * h};
     world.with_pair_precision([&](auto number) {
       const auto& records = world.records("water").template get<decltype(number)>();
       gather<Pair::template Sums>(world.list("water", "water"), records, records, pair,
                                   [&](Index i, const auto& sum) {
-                                    (*acceleration_)[i] += to_vec(sum.force) / (*density_)[i];
+                                    (*acceleration_)[i] = g + to_vec(sum.force) / (*density_)[i];
                                   });
     });
   }
