@@ -37,7 +37,7 @@ nlohmann::ordered_json plan_json(const auto& world, const auto& plan) {
     for (const auto& [name, field] : set->fields())
       j["fields"].push_back({{"set", set->name()}, {"name", name}, {"unit", field->spec().unit.symbol},
                              {"lifetime", lifetimes[static_cast<int>(field->spec().lifetime)]}});
-  j["memory_bytes"] = world.bytes();
+  j["memory_bytes"] = world.bytes() + plan.bytes();
   return j;
 }
 

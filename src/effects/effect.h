@@ -90,6 +90,8 @@ class Effect {
   virtual void limit(const World<Dim>&, StepLimits&) const {}
   /// Adds what the guard is to watch.
   virtual void bounds(const World<Dim>&, std::vector<FieldBound>&) const {}
+  /// Memory that the effect keeps beside fields and lists [bytes].
+  virtual std::size_t bytes() const { return 0; }
 };
 
 /// An effect's answer to a scene: instances, or none; the sentence says why in both cases.

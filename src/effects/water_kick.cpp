@@ -1,4 +1,6 @@
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "core/parallel.h"
 #include "effects/effect.h"
@@ -41,23 +43,31 @@ class WaterKick final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& records = world.records("water").template get<T>();
-      parallel_for(water_->size(), [&](Index i) {
-        a[i] = sum[i];
-        v[i] += dt * sum[i];
-        x[i] += 0.5 * dt * v[i];
-        T* slot = records[i];
-        for (int k = 0; k < Dim; ++k) slot[water_slot::velocity + k] = static_cast<T>(v[i][k]);
-        if (repack) records.set_position(i, x[i]);
+      fastest_.resize(static_cast<std::size_t>((water_->size() + block_size - 1) / block_size));
+      parallel_blocks(water_->size(), block_size, [&](Index begin, Index end, Index b) {
+        double fastest = 0;
+        for (Index i = begin; i < end; ++i) {
+          a[i] = sum[i];
+          v[i] += dt * sum[i];
+          x[i] += 0.5 * dt * v[i];
+          fastest = max_or_nan(fastest, v[i].squaredNorm());
+          T* slot = records[i];
+          for (int k = 0; k < Dim; ++k) slot[water_slot::velocity + k] = static_cast<T>(v[i][k]);
+          if (repack) records.set_position(i, x[i]);
+        }
+        fastest_[static_cast<std::size_t>(b)] = fastest;
       });
     });
+    arrangement_ = world.arrangement();
   }
+
+  std::size_t bytes() const override { return fastest_.capacity() * sizeof(double); }
 
   void limit(const World<Dim>& world, StepLimits& limits) const override {
     const Numerics& n = world.model().numerics;
     const WaterConstants w = WaterConstants::of(world);
     const double h = water_->smoothing_length();
-    const auto& v = water_->vector(fields::velocity);
-    const double speed = std::sqrt(block_max(water_->size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
+    const double speed = largest_speed(world);
     limits.note_speed("water", speed / w.sound_speed);
     const double acoustic = n.cfl_acoustic * h / (w.sound_speed + speed);  // Eq. 92
     limits.acoustic = std::min(limits.acoustic, acoustic);
@@ -69,7 +79,18 @@ class WaterKick final : public Effect<Dim> {
   }
 
  private:
+  // The largest speed, m/s; NaN if there is one. The kick has looked at all, unless particles have been
+  // lost or read from a file since then.
+  double largest_speed(const World<Dim>& world) const {
+    if (arrangement_ == world.arrangement())
+      return std::sqrt(std::accumulate(fastest_.begin(), fastest_.end(), 0.0, max_or_nan));
+    const auto& v = water_->vector(fields::velocity);
+    return std::sqrt(block_max(water_->size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
+  }
+
   ParticleSet<Dim>* water_ = nullptr;
+  std::vector<double> fastest_;  // largest squared speed of each block after the last kick
+  long arrangement_ = -1;        // during which that kick was
 };
 
 const RegisterEffect<WaterKick> registered;

@@ -1,5 +1,6 @@
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "effects/effect.h"
@@ -54,13 +55,14 @@ struct SurfacePair {
   // Slots of the water's second record while this pass runs.
   static constexpr int surface_normal = 8;
   static constexpr int on_surface = 12;
+  static constexpr int gradient = 13;  ///< sum of grad W V, on its way to the displacement
 };
 
 template <int Dim>
 struct Arrangement {
-  double number;
-  Vec<Dim> gradient;
-  Eigen::Matrix<double, Dim, Dim> moment;
+  double number = 0;
+  Vec<Dim> gradient = Vec<Dim>::Zero();
+  Eigen::Matrix<double, Dim, Dim> moment = Eigen::Matrix<double, Dim, Dim>::Zero();
 
   void add(const typename ArrangementPair<Dim>::template Sums<double>& s) {
     number += s.number;
@@ -113,96 +115,107 @@ class WaterReinitialization final : public Effect<Dim> {
   }
 
   void apply(World<Dim>& world) override {
-    sums_.assign(static_cast<std::size_t>(water_->size()),
-                 {0, Vec<Dim>::Zero(), Eigen::Matrix<double, Dim, Dim>::Zero()});
-    sum_pairs(world);
-    update(world);
-    if (world.model().numerics.transport_velocity) world.pack_positions(*water_);
+    const Numerics& n = world.model().numerics;
+    world.with_pair_precision([&](auto number) {
+      using T = decltype(number);
+      sum_pairs<T>(world, n.density_reinitialization == "summation", n.transport_velocity);
+      if (n.transport_velocity) shift<T>(world);
+    });
+    if (n.transport_velocity) world.pack_positions(*water_);
   }
 
  private:
-  void sum_pairs(World<Dim>& world) {
+  // Block by block, so that the sums of no more than a block are ever kept.
+  template <class T>
+  void sum_pairs(World<Dim>& world, bool summation, bool transport) {
+    using Sums = std::array<Arrangement<Dim>, block_size>;
     const double rho0 = water_->constant("density");
     const auto& m = water_->scalar(fields::mass);
     const ArrangementPair<Dim> pair{Kernel<Dim>(water_->smoothing_length())};
-    world.with_pair_precision([&](auto number) {
-      using T = decltype(number);
-      using Pair = ArrangementPair<Dim>;
-      auto& records = world.records("water").template get<T>();
-      // The volume at rest, so that compression does not feed back on the arrangement.
-      parallel_for(water_->size(), [&](Index i) {
-        records[i][water_slot::volume] = static_cast<T>(m[i] / rho0);
-      });
-      const auto keep = [&](Index i, const auto& s) { sums_[static_cast<std::size_t>(i)].add(s); };
-      gather<Pair::template Sums>(world.list("water", "water"), records, records, pair, keep);
-      if (has_walls_)
-        gather<Pair::template Sums>(world.list("water", "walls"), records,
-                                    world.records("walls").template get<T>(), pair, keep);
+    auto& records = world.records("water").template get<T>();
+    // The volume at rest, so that compression does not feed back on the arrangement.
+    parallel_for(water_->size(), [&](Index i) {
+      records[i][water_slot::volume] = static_cast<T>(m[i] / rho0);
+    });
+    const auto walk = [&](const NeighborList& list, const Records<Dim, T>& sources, Index b, Sums& sums) {
+      gather_block<ArrangementPair<Dim>::template Sums>(
+          list, b, records, sources, pair,
+          [&](Index i, const auto& s) { sums[static_cast<std::size_t>(i - b * block_size)].add(s); });
+    };
+    const NeighborList& water = world.list("water", "water");
+    const NeighborList* walls = has_walls_ ? &world.list("water", "walls") : nullptr;
+    const Records<Dim, T>* wall_records = has_walls_ ? &world.records("walls").template get<T>() : nullptr;
+    Records<Dim, T>* second = transport ? &world.records("water", 1).template get<T>() : nullptr;
+    const double self = pair.kernel.w(0.0);
+    auto& rho = water_->scalar(fields::density);
+    auto& surface = water_->tag(fields::surface);
+    parallel_blocks(water_->size(), block_size, [&](Index begin, Index end, Index b) {
+      Sums sums;
+      walk(water, records, b, sums);
+      if (walls) walk(*walls, *wall_records, b, sums);
+      for (Index i = begin; i < end; ++i) {
+        const Arrangement<Dim>& s = sums[static_cast<std::size_t>(i - begin)];
+        // The divergence of position is Dim in the bulk; three quarters of it tell the surface.
+        surface[i] = -s.moment.trace() < 0.75 * Dim ? 1 : 0;
+        if (summation) {
+          const double summed = rho0 * (s.number + self * m[i] / rho0) / lattice_;
+          // A sum that falls short is a surface or a splash, not a rarefaction: it keeps its density,
+          // up to the factor by which rho exceeds rho0.
+          rho[i] = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
+        }
+        if (second) pack_surface((*second)[i] - record_size, surface[i] != 0, s);
+      }
     });
   }
 
-  void update(World<Dim>& world) {
-    const Numerics& n = world.model().numerics;
-    const double rho0 = water_->constant("density");
-    const double h = water_->smoothing_length();
-    const double self = Kernel<Dim>(h).w(0.0);
-    const bool summation = n.density_reinitialization == "summation";
-    auto& rho = water_->scalar(fields::density);
-    auto& surface = water_->tag(fields::surface);
-    const auto& m = water_->scalar(fields::mass);
-    parallel_for(water_->size(), [&](Index i) {
-      const Arrangement<Dim>& s = sums_[static_cast<std::size_t>(i)];
-      // The divergence of position is Dim in the bulk; three quarters of it tell the surface.
-      surface[i] = -s.moment.trace() < 0.75 * Dim ? 1 : 0;
-      if (!summation) return;
-      const double summed = rho0 * (s.number + self * m[i] / rho0) / lattice_;
-      // A sum that falls short is a surface or a splash, not a rarefaction: it keeps its density,
-      // up to the factor by which rho exceeds rho0.
-      rho[i] = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
-    });
-    if (n.transport_velocity) shift(world);
+  // What the shift needs of one particle.
+  template <class T>
+  static void pack_surface(T* slot, bool surface, const Arrangement<Dim>& s) {
+    using Pair = SurfacePair<Dim>;
+    const Vec<Dim> normal = surface ? surface_normal(s) : Vec<Dim>::Zero();
+    slot[Pair::on_surface] = surface ? T(1) : T(0);
+    for (int k = 0; k < Dim; ++k) {
+      slot[Pair::surface_normal + k] = static_cast<T>(normal[k]);
+      slot[Pair::gradient + k] = static_cast<T>(s.gradient[k]);
+    }
   }
 
   // Eq. 87 with the sign that leads away from crowded places. Wherever the kernel reaches the free
   // surface, its truncation looks like a rarefaction, much stronger than any real one. Eq. 87 keeps the
   // part along the surface; as the normal is never exact, what is left stirs still water (kinetic energy
   // three times as high, 15 spacings deep in 3D), so the default leaves these particles alone.
+  template <class T>
   void shift(World<Dim>& world) {
     using Pair = SurfacePair<Dim>;
     const double h = water_->smoothing_length();
     const double factor = 2 * world.model().numerics.transport_coefficient * h * h;
     const bool tangential = world.model().numerics.transport_at_surface == "tangential";
     auto& x = water_->vector(fields::position);
-    const auto& surface = water_->tag(fields::surface);
-    world.with_pair_precision([&](auto number) {
-      using T = decltype(number);
-      auto& first = world.records("water", 0).template get<T>();
-      auto& second = world.records("water", 1).template get<T>();
-      parallel_for(water_->size(), [&](Index i) {
-        T* slot = second[i] - record_size;
-        const Vec<Dim> normal = surface[i] ? surface_normal(sums_[static_cast<std::size_t>(i)]) : Vec<Dim>::Zero();
-        slot[Pair::on_surface] = static_cast<T>(surface[i]);
-        for (int k = 0; k < Dim; ++k) slot[Pair::surface_normal + k] = static_cast<T>(normal[k]);
-      });
-      gather<Pair::template Sums>(
-          world.list("water", "water"), first, with(first, second), Pair{Kernel<Dim>(h)},
-          [&](Index i, const auto& near) {
-            const Arrangement<Dim>& s = sums_[static_cast<std::size_t>(i)];
-            Vec<Dim> move = -factor * s.gradient;
-            if (surface[i] || near.share > 0) {
-              if (!tangential) return;
-              const double own = surface[i] ? 1.0 : 0.0;  // the list leaves the particle itself out
-              const Vec<Dim> mean = to_vec(near.normal) + (surface[i] ? surface_normal(s) : Vec<Dim>::Zero());
-              // Surfaces that face each other, as of a thin film or a lonely particle, leave no
-              // direction along which anything may move.
-              const double length = mean.norm();
-              if (length < 0.5 * (near.share + own)) return;
-              const Vec<Dim> normal = mean / length;
-              move -= normal.dot(move) * normal;
-            }
-            x[i] += move;
-          });
-    });
+    const auto& first = world.records("water", 0).template get<T>();
+    const auto& second = world.records("water", 1).template get<T>();
+    gather<Pair::template Sums>(
+        world.list("water", "water"), first, with(first, second), Pair{Kernel<Dim>(h)},
+        [&](Index i, const auto& near) {
+          const T* slot = second[i] - record_size;
+          const bool surface = slot[Pair::on_surface] > 0;
+          Vec<Dim> move, normal;
+          for (int k = 0; k < Dim; ++k) {
+            move[k] = -factor * static_cast<double>(slot[Pair::gradient + k]);
+            normal[k] = static_cast<double>(slot[Pair::surface_normal + k]);
+          }
+          if (surface || near.share > 0) {
+            if (!tangential) return;
+            // The list leaves the particle itself out.
+            const double share = near.share + (surface ? 1.0 : 0.0);
+            const Vec<Dim> mean = to_vec(near.normal) + normal;
+            // Surfaces that face each other, as of a thin film or a lonely particle, leave no
+            // direction along which anything may move.
+            const double length = mean.norm();
+            if (length < 0.5 * share) return;
+            move -= (mean.dot(move) / (length * length)) * mean;
+          }
+          x[i] += move;
+        });
   }
 
   // Outward normal of the free surface at one particle, corrected for the disorder around it; zero
@@ -215,7 +228,6 @@ class WaterReinitialization final : public Effect<Dim> {
   bool has_walls_;
   ParticleSet<Dim>* water_ = nullptr;
   double lattice_ = 1;
-  std::vector<Arrangement<Dim>> sums_;
 };
 
 const RegisterEffect<WaterReinitialization> registered;

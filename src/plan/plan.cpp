@@ -196,6 +196,13 @@ void Plan<Dim>::load(const StateSource& source) {
   }
 }
 
+template <int Dim>
+std::size_t Plan<Dim>::bytes() const {
+  std::size_t sum = 0;
+  for (const auto& e : effects_) sum += e.effect->bytes();
+  return sum;
+}
+
 template class Plan<2>;
 template class Plan<3>;
 

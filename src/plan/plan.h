@@ -45,6 +45,8 @@ class Plan {
   StepLimits limits() const;
   /// What the active effects want watched.
   std::vector<FieldBound> bounds() const;
+  /// Memory that the effects keep beside fields and lists [bytes].
+  std::size_t bytes() const;
 
   const std::vector<PlannedEffect<Dim>>& effects() const { return effects_; }
   const std::vector<UnusedEffect>& unused() const { return unused_; }

@@ -71,13 +71,21 @@ Sums<double> reduce(const Sums<L>& lanes) {
   return std::bit_cast<Sums<double>>(to);
 }
 
-}  // namespace detail
+// Throws Error (internal) if records are not those of the list's sets: the null record of the list
+// must be that of the sources.
+template <int Dim, class T, int N, int M>
+void check_records(const NeighborList& list, const RecordView<Dim, T, N>& targets,
+                   const RecordView<Dim, T, M>& sources) {
+  if (targets.size() != list.target_count() || sources.size() != list.source_count() ||
+      !(targets.frame() == sources.frame()))
+    throw Error(ExitCode::internal, "a pass over pairs met records of another set");
+}
 
-/// gather for one block of a list, in the calling thread: for passes that walk several lists.
+// gather for one block of a list, in the calling thread.
 template <template <class> class Sums, int Dim, class T, int N, int M, class Pair, class Finish>
-void gather_block(const NeighborList::Block& block, const RecordView<Dim, T, N>& targets,
-                  const RecordView<Dim, T, M>& sources, const Pair& pair_function,
-                  const Finish& finish) {
+void walk_block(const NeighborList::Block& block, const RecordView<Dim, T, N>& targets,
+                const RecordView<Dim, T, M>& sources, const Pair& pair_function,
+                const Finish& finish) {
   using L = Lanes<T>;
   // Copies: the compiler keeps them in registers, as nothing in the loop can write them.
   const Pair pair = pair_function;
@@ -105,6 +113,8 @@ void gather_block(const NeighborList::Block& block, const RecordView<Dim, T, N>&
   }
 }
 
+}  // namespace detail
+
 /// Calls finish(i, sums) for every walked target i of the list, with sums (in double) of
 /// pair(sums, i, j, r, r2) over its neighbors. `targets` and `sources` are Records, or two of them
 /// joined by with(); both sides have the frame of the list's grid. Sums are taken in the precision
@@ -115,15 +125,24 @@ void gather(const NeighborList& list, const Targets& target_records, const Sourc
             const Pair& pair_function, const Finish& finish) {
   const auto targets = view(target_records);
   const auto sources = view(source_records);
-  // The null record of the list must be that of the sources.
-  if (targets.size() != list.target_count() || sources.size() != list.source_count() ||
-      !(targets.frame() == sources.frame()))
-    throw Error(ExitCode::internal, "a pass over pairs met records of another set");
+  detail::check_records(list, targets, sources);
   const auto blocks = list.blocks();
   parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
-    gather_block<Sums>(blocks[static_cast<std::size_t>(b)], targets, sources, pair_function,
-                       finish);
+    detail::walk_block<Sums>(blocks[static_cast<std::size_t>(b)], targets, sources, pair_function,
+                             finish);
   });
+}
+
+/// gather for targets [256 b, 256 b + 256) of the list only, in the calling thread: for passes that
+/// walk several lists of the same targets.
+template <template <class> class Sums, class Targets, class Sources, class Pair, class Finish>
+void gather_block(const NeighborList& list, Index b, const Targets& target_records,
+                  const Sources& source_records, const Pair& pair_function, const Finish& finish) {
+  const auto targets = view(target_records);
+  const auto sources = view(source_records);
+  detail::check_records(list, targets, sources);
+  detail::walk_block<Sums>(list.blocks()[static_cast<std::size_t>(b)], targets, sources,
+                           pair_function, finish);
 }
 
 /// What gather does, over all pairs nearer than `radius` [m], in plain double and one thread: the

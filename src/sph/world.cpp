@@ -101,6 +101,7 @@ void World<Dim>::remove_lost(ParticleSet<Dim>& set) {
 
 template <int Dim>
 void World<Dim>::rearrange() {
+  ++arrangement_;
   for (auto& s : sets_) {
     CellGrid<Dim>& grid = grids_[s->name()];
     const bool first = grid.size() != s->size();
@@ -108,7 +109,7 @@ void World<Dim>::rearrange() {
     if (moves_[s->name()]) remove_lost(*s);
     const auto& x = s->vector(fields::position);
     grid.build({x.data(), static_cast<std::size_t>(x.size())}, frame_, reach());
-    s->permute({grid.order().begin(), grid.order().end()});
+    s->permute(grid.order());
     grid.set_sorted();
     for (int which = 0; which < 2; ++which) {
       const auto it = records_.find({s->name(), which});

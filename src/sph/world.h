@@ -85,6 +85,8 @@ class World {
   /// Line 28 of Algorithm 2: removes lost particles, sorts by cell, rebuilds grids and lists and the
   /// places in the records.
   void rearrange();
+  /// Number of rearrangements so far: what was kept of single particles is void when it changes.
+  long arrangement() const { return arrangement_; }
   /// Writes the positions of a set into its first records.
   void pack_positions(ParticleSet<Dim>& set);
   /// Particles that left the domain so far, by set.
@@ -115,6 +117,7 @@ class World {
   std::map<std::pair<std::string, std::string>, NeighborList> lists_;
   std::map<std::pair<std::string, int>, RecordPair<Dim>> records_;
   std::map<std::string, Index> lost_;
+  long arrangement_ = 0;
   Vec<Dim> lo_ = Vec<Dim>::Zero(), hi_ = Vec<Dim>::Zero();
   FixedPoint<Dim> frame_;
 };

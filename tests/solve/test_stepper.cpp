@@ -154,4 +154,54 @@ TEST_SUITE("solve") {
     CHECK(off < 0.2 * 0.1);
     CHECK(off_speed < 0.1 * 9.81 * t);
   }
+
+  TEST_CASE("the bound of the next acoustic step is that of the fastest particle after the kick") {
+    Rig<2> rig(block("[0.3*x, 0.2*x, 0]"));
+    rig.plan_it();
+    rig.advance(1);
+    const auto acoustic_step = [&] {
+      for (const Stage s : {Stage::predict, Stage::force, Stage::kick, Stage::rate, Stage::correct}) rig.plan->run(s);
+    };
+    const auto& v = rig.water().vector(fields::velocity);
+    const auto expected = [&] {
+      double fastest = 0;
+      for (Index i = 0; i < v.size(); ++i) fastest = std::max(fastest, v[i].norm());
+      REQUIRE(fastest > 0.1);
+      return rig.model.numerics.cfl_acoustic * rig.water().smoothing_length() /
+             (rig.water().constant("sound_speed") + fastest);
+    };
+    CHECK(rig.plan->limits().acoustic == doctest::Approx(expected()).epsilon(1e-14));
+    for (int k = 0; k < 3; ++k) {
+      acoustic_step();
+      CHECK(rig.plan->limits().acoustic == doctest::Approx(expected()).epsilon(1e-14));
+    }
+    // A particle that stops being a number between two rearrangements does not hide.
+    rig.water().vector(fields::velocity)[3][0] = std::nan("");
+    acoustic_step();
+    CHECK_FALSE(rig.plan->limits().mach < 1);
+  }
+
+  TEST_CASE("memory per particle of water in 3D stays within the goals") {
+    for (const auto& [h_factor, goal] : {std::pair{1.3, 800.0}, std::pair{1.8, 1300.0}}) {
+      Rig<3> rig(fmt::format(R"(
+dimension: 3
+resolution: 1
+gravity: 0
+end_time: 1e6
+materials: [{{name: water, type: water, sound_speed: 10}}]
+bodies:
+  - {{name: block, material: water, shape: {{type: box, min: [0, 0, 0], max: [26, 26, 26]}},
+     velocity: ['0.1*sin(y)', '0.1*sin(z)', '0.1*sin(x)']}}
+numerics: {{h_factor_water: {}}}
+)", h_factor));
+      rig.plan_it();
+      rig.advance(2);
+      const double bytes = static_cast<double>(rig.world.bytes() + rig.plan->bytes()) /
+                           static_cast<double>(rig.water().size());
+      CAPTURE(h_factor);
+      CAPTURE(bytes);
+      CHECK(bytes < goal);
+      CHECK(bytes > 0.5 * goal);  // what is counted includes fields and lists
+    }
+  }
 }
