@@ -162,6 +162,8 @@ class WaterReinitialization final : public Effect<Dim> {
           // A sum that falls short is a surface or a splash, not a rarefaction: it keeps its density,
           // up to the factor by which rho exceeds rho0.
           rho[i] = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
+          // A free surface bears no tension; a lonely particle would be drawn into a wall by it.
+          if (surface[i]) rho[i] = std::max(rho[i], rho0);
         }
         if (second) pack_surface((*second)[i] - record_size, surface[i] != 0, s);
       }
