@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "core/text.h"
+
 namespace sphgeo {
 
 Node Node::scalar(std::string value, bool in_quotes) {
@@ -11,6 +13,12 @@ Node Node::scalar(std::string value, bool in_quotes) {
   n.kind = Kind::scalar;
   n.text = std::move(value);
   n.quoted = in_quotes;
+  return n;
+}
+
+Node Node::list() {
+  Node n;
+  n.kind = Kind::list;
   return n;
 }
 
@@ -55,7 +63,7 @@ std::string Node::words() const {
     case Kind::scalar:
       break;
   }
-  return fmt::format("'{}'", text.size() > longest ? text.substr(0, longest) + "..." : text);
+  return fmt::format("'{}'", shortened(text, longest));
 }
 
 std::string join_path(const std::string& base, const std::string& key) {

@@ -22,7 +22,8 @@ struct Node {
   std::vector<Entry> entries;  ///< of a mapping, in the order of the file
 
   static Node scalar(std::string value, bool in_quotes = false);
-  static Node list(std::vector<Node> values = {});
+  static Node list();
+  static Node list(std::vector<Node> values);
   static Node map();
 
   /// The entry of a mapping with this key, or nullptr.
