@@ -1,10 +1,16 @@
 // sphgeo: soil, water, rock and structures with smoothed particle hydrodynamics, from a YAML deck.
 
+#include <fcntl.h>
+
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <charconv>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <iostream>
+#include <system_error>
 
 #include "cli/commands.h"
 #include "core/error.h"
@@ -95,6 +101,11 @@ CLI::Validator above_zero(const std::string& what) {
       "", "above zero");
 }
 
+int lost_output(int error_number) {
+  std::cerr << "error: cannot write to standard output: " << std::strerror(error_number) << "\n";
+  return static_cast<int>(ExitCode::io);
+}
+
 int run_guarded(const std::function<int()>& command) {
   try {
     return command();
@@ -106,6 +117,10 @@ int run_guarded(const std::function<int()>& command) {
     return static_cast<int>(e.code());
   } catch (const std::bad_alloc&) {
     std::cerr << "error: there is not enough memory for this scene\n";
+    return static_cast<int>(ExitCode::internal);
+  } catch (const std::system_error& e) {
+    if (std::ferror(stdout) != 0) return lost_output(e.code().value());
+    std::cerr << "internal error: " << e.what() << "\n";
     return static_cast<int>(ExitCode::internal);
   } catch (const std::exception& e) {
     std::cerr << "internal error: " << e.what() << "\n";
@@ -122,9 +137,19 @@ void add_deck(CLI::App* app, std::string& deck, std::vector<std::string>& set) {
       ->type_name("KEY=VALUE");
 }
 
+/// A standard stream that the caller has closed would lend its number to the next file that is opened,
+/// and messages would go into it. Opened the wrong way round, such a stream refuses what is written.
+void keep_standard_streams() {
+  for (const int stream : {0, 1, 2})
+    if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY) < 0) return;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_standard_streams();
+  // Whoever reads our output may go away; that must not end a run.
+  std::signal(SIGPIPE, SIG_IGN);
   CLI::App app{
       "soil, water, rock and structures with smoothed particle hydrodynamics, from a YAML deck",
       "sphgeo"};
@@ -211,9 +236,7 @@ int main(int argc, char** argv) {
   }
   std::cout.flush();
   if (const bool lost = std::fflush(stdout) != 0 || std::ferror(stdout) != 0;
-      (lost || !std::cout) && code == 0) {
-    std::cerr << "error: cannot write to standard output\n";
-    return static_cast<int>(ExitCode::io);
-  }
+      (lost || !std::cout) && code == 0)
+    return lost_output(errno);
   return code;
 }

@@ -1,9 +1,12 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "boundaries/boundary.h"
 #include "deck/registry.h"
+#include "geometry/fill.h"
 #include "geometry/shapes.h"
 
 namespace sphgeo {
@@ -17,6 +20,8 @@ struct Face {
 };
 constexpr std::array<Face, 6> faces{{{"left", 0, false}, {"right", 0, true}, {"front", 1, false},
                                      {"back", 1, true}, {"bottom", 2, false}, {"top", 2, true}}};
+
+std::string rounded(double n) { return fmt::format("{:.3g}", n); }
 
 /// A container: walls around a box, some faces open.
 struct Tank final : WallBoundary {
@@ -34,7 +39,14 @@ struct Tank final : WallBoundary {
     s.check([](Tank& t, CheckContext& c) {
       for (int k = 0; k < 3; ++k)
         if (!(k == 1 && c.dimension() == 2) && !(t.max[k] > t.min[k]))
-          c.error("max", std::string("the tank has no extent along ") + "xyz"[k], "max must exceed min in every direction");
+          return c.error("max", std::string("the tank has no extent along ") + "xyz"[k], "max must exceed min in every direction");
+      // Its walls are some layers thick: six faces, in spacings, bound their particles from below.
+      if (!(c.resolution() > 0)) return;
+      const Vec3 n = ((t.max - t.min) / c.resolution()).cwiseMax(1.0);
+      const double faces_of = c.dimension() == 2 ? n.x() + n.z() : n.x() * n.y() + n.y() * n.z() + n.z() * n.x();
+      if (!(faces_of <= largest_fill))
+        c.error("", "the walls of the tank would take about " + rounded(faces_of) + " particles in each layer",
+                "is the resolution or a length in the wrong unit?");
     });
     return s;
   }
@@ -91,7 +103,11 @@ struct Tank final : WallBoundary {
     for (std::size_t k = 0; k < az.at.size(); ++k)
       for (std::size_t j = 0; j < ay.at.size(); ++j)
         for (std::size_t i = 0; i < ax.at.size(); ++i) {
-          if (!ax.outside[i] && !ay.outside[j] && !az.outside[k]) continue;
+          if (!ax.outside[i] && !ay.outside[j] && !az.outside[k]) {
+            // On to the far wall: the inside of a large tank has far more places than its walls.
+            while (i + 1 < ax.at.size() && !ax.outside[i + 1]) ++i;
+            continue;
+          }
           const Vec3 x(ax.at[i], ay.at[j], az.at[k]);
           Vec3 inner = x.cwiseMax(min).cwiseMin(max);
           if (p.dimension == 2) inner.y() = 0;

@@ -25,6 +25,7 @@ int write_fully(int descriptor, const char* data, std::size_t bytes) {
     const ssize_t n = ::write(descriptor, data, bytes);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return errno;
+    if (n == 0) return ENOSPC;  // no system does this, but waiting for it to stop would be for ever
     data += n;
     bytes -= static_cast<std::size_t>(n);
   }

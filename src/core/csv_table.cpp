@@ -74,7 +74,7 @@ std::string_view without_unit(std::string_view heading) {
 
 }  // namespace
 
-CsvTable parse_csv_table(std::string_view text, const std::string& path) {
+CsvTable parse_csv_table(std::string_view text, const std::string& path, std::size_t max_cells) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a spreadsheet's byte order mark
   CsvTable table;
   table.path_ = path;
@@ -110,6 +110,8 @@ CsvTable parse_csv_table(std::string_view text, const std::string& path) {
     if (cells.size() != table.names_.size())
       throw TableError(fmt::format("{}: {} cells, but there are {} columns", place, cells.size(),
                                    table.names_.size()));
+    if ((table.lines_.size() + 1) * cells.size() > max_cells)
+      throw TableError(fmt::format("{}: more than {} cells", place, max_cells));
     for (std::size_t c = 0; c < cells.size(); ++c) table.cells_[c].push_back(std::move(cells[c]));
     table.lines_.push_back(line_number);
   }

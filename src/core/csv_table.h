@@ -40,7 +40,8 @@ class CsvTable {
   CsvTable where(std::string_view name, std::string_view value) const;
 
  private:
-  friend CsvTable parse_csv_table(std::string_view text, const std::string& path);
+  friend CsvTable parse_csv_table(std::string_view text, const std::string& path,
+                                  std::size_t max_cells);
   std::size_t index(std::string_view name) const;
 
   std::string path_;
@@ -50,8 +51,10 @@ class CsvTable {
   std::vector<int> lines_;                       ///< the line of each row
 };
 
-/// Parses the text of a table; `path` is for the messages. Throws TableError with file:line.
-CsvTable parse_csv_table(std::string_view text, const std::string& path);
+/// Parses the text of a table of at most 4096 columns; `path` is for the messages. Throws TableError
+/// with file:line.
+CsvTable parse_csv_table(std::string_view text, const std::string& path,
+                         std::size_t max_cells = 20'000'000);
 
 /// Reads a table of at most 256 MB. Throws IoError or TableError.
 CsvTable read_csv_table(const std::string& path);

@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/text.h"
+
 namespace sphgeo {
 
 namespace {
@@ -47,6 +49,13 @@ std::string without_tabs(std::string_view line) {
   return out;
 }
 
+/// Characters of UTF-8, each taken to be as wide as a letter.
+std::size_t width_of(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+  }));
+}
+
 struct Colors {
   std::string_view bold, strong, off;
 };
@@ -58,7 +67,8 @@ std::string heading(const Diagnostic& d, const Colors& c) {
     at += fmt::format(":{}:{}", d.place.line, std::max(1, d.place.column));
   }
   if (!at.empty()) at += ": ";
-  std::string message = d.message;
+  constexpr std::size_t longest_message = 600;
+  std::string message = shortened(d.message, longest_message);
   if (!d.path.empty() && message.find(d.path) == std::string::npos)
     message = d.path + ": " + message;
   return fmt::format("{}{}{}{}[{}]{}: {}\n", c.bold, at, c.strong, severity_name(d.severity), d.id,
@@ -122,10 +132,13 @@ std::string Diagnostics::render(bool color) const {
       if (!d->help.empty()) out += fmt::format("      = help: {}\n", d->help);
       continue;
     }
-    const auto column = static_cast<std::size_t>(std::max(1, d->place.column) - 1);
-    const std::string marks = "^" + std::string(word_length(line, column) - 1, '~');
+    const std::size_t column =
+        std::min(static_cast<std::size_t>(std::max(1, d->place.column) - 1), line.size());
+    const std::size_t length = word_length(line, column);
+    const std::size_t width = std::max<std::size_t>(1, width_of(line.substr(column, length)));
+    const std::string marks = "^" + std::string(width - 1, '~');
     out += fmt::format("{:>5} | {}\n", d->place.line, without_tabs(line));
-    out += fmt::format("{:>5} | {}{}{}{}{}{}\n", "", std::string(column, ' '), c.strong, marks,
+    out += fmt::format("{:>5} | {}{}{}{}{}{}\n", "", std::string(width_of(line.substr(0, column)), ' '), c.strong, marks,
                        c.off, d->help.empty() ? "" : " ", d->help);
   }
   if (errors > most_errors) out += fmt::format("... and {} more errors\n", errors - most_errors);

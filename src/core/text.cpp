@@ -50,6 +50,8 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   int best = reach + 1;
   std::string found;
   for (const std::string& c : candidates) {
+    const std::size_t longer = std::max(name.size(), c.size()), shorter = std::min(name.size(), c.size());
+    if (longer - shorter > static_cast<std::size_t>(reach)) continue;  // that many edits at least
     // A name may not be replaced as a whole: "t" is no misspelling of "x".
     const int d = edit_distance(name, c);
     if (d < best && d < static_cast<int>(std::max(name.size(), c.size()))) {
@@ -93,6 +95,30 @@ std::string lower_case(std::string_view text) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
   return out;
+}
+
+std::string shortened(std::string_view text, std::size_t bytes) {
+  if (text.size() <= bytes) return std::string(text);
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xc0) == 0x80) --bytes;
+  return std::string(text.substr(0, bytes)) + "...";
+}
+
+std::size_t invalid_utf8(std::string_view text) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
+  for (std::size_t k = 0; k < text.size();) {
+    const unsigned char lead = byte(k);
+    const std::size_t length = lead < 0x80 ? 1 : lead < 0xc2 ? 0 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : lead < 0xf5 ? 4 : 0;
+    if (length == 0 || k + length > text.size()) return k;
+    for (std::size_t j = 1; j < length; ++j)
+      if ((byte(k + j) & 0xc0) != 0x80) return k;
+    // Longer than needed, a surrogate, or beyond U+10FFFF.
+    const unsigned char next = length > 2 ? byte(k + 1) : 0;
+    if ((lead == 0xe0 && next < 0xa0) || (lead == 0xed && next > 0x9f) || (lead == 0xf0 && next < 0x90) ||
+        (lead == 0xf4 && next > 0x8f))
+      return k;
+    k += length;
+  }
+  return std::string_view::npos;
 }
 
 std::string_view trimmed(std::string_view text) {

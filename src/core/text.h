@@ -27,6 +27,12 @@ std::string exact(double value);
 
 std::string lower_case(std::string_view text);
 
+/// The text, or its first `bytes` bytes and "..."; a UTF-8 character is kept or dropped as a whole.
+std::string shortened(std::string_view text, std::size_t bytes);
+
+/// Where the first byte stands that is no part of valid UTF-8 (RFC 3629); npos when all is valid.
+std::size_t invalid_utf8(std::string_view text);
+
 /// Without blanks at both ends.
 std::string_view trimmed(std::string_view text);
 

@@ -273,8 +273,14 @@ Expression::Expression(double constant) : constant_(constant), text_(exact(const
 Expression Expression::parse(const std::string& formula, const Variables& variables,
                              const std::string& allowed) {
   if (trimmed(formula).empty()) throw FormulaError("the formula is empty", {}, 0);
-  const std::string used = check_names(words_of(formula), variables, allowed);
-  const auto program = std::make_shared<Program>(formula, variables, used);
+  const std::vector<Word> words = words_of(formula);
+  const std::string used = check_names(words, variables, allowed);
+  // Only the variables it names: a deck may have thousands of both.
+  Variables named;
+  for (const Word& w : words)
+    if (const double* value = variables.find(w.text); value != nullptr && named.find(w.text) == nullptr)
+      named.values.emplace_back(w.text, *value);
+  const auto program = std::make_shared<Program>(formula, std::move(named), used);
   const double value = (*program)({0.0, 0.0, 0.0, 0.0});  // finds what only muparser can see
   if (used.empty()) {
     if (!std::isfinite(value)) throw FormulaError("the formula has no finite value", {}, 0);

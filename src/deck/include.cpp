@@ -103,11 +103,21 @@ class Includer {
                    "include it in one place");
       return std::nullopt;
     }
+    if (open_.size() > deepest || done_.size() >= most_files) {
+      found_.error("E006", file.place, "include",
+                   open_.size() > deepest
+                       ? fmt::format("included files include others more than {} levels deep", deepest)
+                       : fmt::format("the deck includes more than {} files", most_files));
+      return std::nullopt;
+    }
     done_.push_back(identity);
-    const std::optional<std::string> text = read_text_file(path.string(), file.place, found_);
+    const std::optional<std::string> text = read_text_file(path.string(), file.place, found_, true);
     if (!text) return std::nullopt;
     return read({path.string(), path.parent_path().string(), *text}, identity);
   }
+
+  static constexpr std::size_t deepest = 20;
+  static constexpr std::size_t most_files = 200;
 
   Diagnostics& found_;
   std::vector<std::string> open_;  // files on the way to the present one

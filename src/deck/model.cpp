@@ -1,5 +1,8 @@
 #include "deck/model.h"
 
+#include "core/csv_table.h"
+#include "core/error.h"
+
 namespace sphgeo {
 
 Schema<Body> Body::schema() {
@@ -123,6 +126,23 @@ Schema<Output> Output::schema() {
   return s;
 }
 
+namespace {
+
+/// A table that cannot be used is found now, and not when the run has ended.
+void check_reference(const Expect& e, CheckContext& c) {
+  try {
+    const CsvTable table = read_csv_table(e.reference_csv->path);
+    if (table.names().size() < 2 && !(e.x && e.y))
+      return c.error("reference_csv", "a curve needs two columns, and the table has one");
+    table.numbers(e.x.value_or(table.names().front()));
+    table.numbers(e.y ? *e.y : table.names()[1]);
+  } catch (const Error& error) {
+    c.error("reference_csv", error.what());
+  }
+}
+
+}  // namespace
+
 Schema<Expect> Expect::schema() {
   Schema<Expect> s("expect",
                    "A result the deck claims, from a probe, with reference and tolerance.");
@@ -165,6 +185,7 @@ Schema<Expect> Expect::schema() {
                     : "'reference_csv' is used only with reduce: curve");
       return;
     }
+    if (curve) check_reference(e, c);
     if (e.reduce == "at" && !e.at) c.error("reduce", "reduce: at needs the time 'at'");
     if (e.reduce != "at" && e.at) c.error("at", "'at' has no meaning unless reduce is at");
     if (!curve && e.measure == "within" && !e.reference) {

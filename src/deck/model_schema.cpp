@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <unordered_set>
 #include <utility>
 
 #include "core/hash.h"
@@ -35,18 +36,19 @@ void check_names(const std::vector<Named>& named, const std::string& what, Check
     return (l >= 'a' && l <= 'z') || (l >= 'A' && l <= 'Z') || (l >= '0' && l <= '9') || l == '_' ||
            l == '-';
   };
-  for (std::size_t k = 0; k < named.size(); ++k) {
-    const auto& [path, name] = named[k];
-    if (name.empty() || !std::all_of(name.begin(), name.end(), fits)) {
+  constexpr std::size_t longest = 100;  // with its ending it must fit a file system's 255 bytes
+  std::unordered_set<std::string> seen;
+  for (const auto& [path, name] : named) {
+    if (name.size() > longest)
+      c.error(path, fmt::format("a name of {} characters", name.size()),
+              fmt::format("at most {} characters", longest), "E024");
+    else if (name.empty() || !std::all_of(name.begin(), name.end(), fits)) {
       c.error(path, fmt::format("'{}' cannot be used as a name", name),
               "use letters, digits, '_' and '-'", "E024");
     }
-    for (std::size_t j = 0; j < k; ++j) {
-      if (named[j].second != name) continue;
+    if (!seen.insert(name).second)
       c.error(path, fmt::format("the name '{}' is used twice", name),
               fmt::format("{} need different names", what), "E022");
-      break;
-    }
   }
 }
 
@@ -107,13 +109,17 @@ Schema<Model> Model::schema() {
   s.optional("include", &Model::include, unit::none,
              "deck files whose sections are merged into this one, relative to this file")
       .changeable_on_resume();
-  s.required("materials", &Model::materials, unit::none, "what bodies are made of").items(1);
-  s.optional("bodies", &Model::bodies, unit::none, "regions filled with particles");
-  s.optional("boundaries", &Model::boundaries, unit::none, "walls and other borders of the scene");
-  s.optional("probes", &Model::probes, unit::none, "what is measured while the scene runs");
+  s.required("materials", &Model::materials, unit::none, "what bodies are made of")
+      .items(1, 1000);
+  s.optional("bodies", &Model::bodies, unit::none, "regions filled with particles").items(0, 10000);
+  s.optional("boundaries", &Model::boundaries, unit::none, "walls and other borders of the scene")
+      .items(0, 1000);
+  s.optional("probes", &Model::probes, unit::none, "what is measured while the scene runs")
+      .items(0, 10000);
   s.optional("output", &Model::output, unit::none, "frames and tables").changeable_on_resume();
   s.optional("numerics", &Model::numerics, unit::none, "choices of the numerical method");
   s.optional("expect", &Model::expect, unit::none, "results the deck claims")
+      .items(0, 10000)
       .changeable_on_resume();
   s.check(check_all);
   return s;

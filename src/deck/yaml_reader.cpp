@@ -5,6 +5,8 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -14,7 +16,10 @@
 #include <map>
 #include <sstream>
 #include <utility>
+#include <string_view>
 #include <vector>
+
+#include "core/text.h"
 
 namespace sphgeo {
 
@@ -23,11 +28,27 @@ namespace {
 /// Ends the reading after an error that was already reported.
 struct Stop {};
 
-int count_nodes(const Node& node) {
-  int n = 1;
-  for (const Node& item : node.items) n += count_nodes(item);
-  for (const Entry& e : node.entries) n += count_nodes(e.value);
-  return n;
+/// What a value weighs, the values in it included.
+struct Weight {
+  int nodes = 0;
+  std::size_t bytes = 0;
+  int depth = 0;  ///< levels of lists and mappings
+};
+
+Weight weight_of(const Node& node) {
+  Weight w{1, node.text.size(), 0};
+  const auto add = [&w](const Node& part) {
+    const Weight p = weight_of(part);
+    w.nodes += p.nodes;
+    w.bytes += p.bytes;
+    w.depth = std::max(w.depth, p.depth + 1);
+  };
+  for (const Node& item : node.items) add(item);
+  for (const Entry& e : node.entries) {
+    w.bytes += e.key.size();
+    add(e.value);
+  }
+  return w;
 }
 
 /// Builds the tree from the parser's events, which show keys and aliases with their own marks; the
@@ -56,7 +77,10 @@ class Builder final : public YAML::EventHandler {
     }
     Node copy = found->second;
     copy.place = place(mark);
-    count(count_nodes(copy), copy.place);
+    const Weight w = weight_of(copy);
+    if (static_cast<int>(open_.size()) + w.depth > limits_.depth) too_deep(copy.place);
+    // finish() counts the value itself, as one node.
+    count(w.nodes - 1, w.bytes, copy.place);
     finish(std::move(copy), 0);
   }
 
@@ -65,6 +89,12 @@ class Builder final : public YAML::EventHandler {
     Node node = Node::scalar(value, tag == "!");
     node.place = place(mark);
     refuse_tag(tag, node.place);
+    if (value.size() > limits_.text) {
+      found_.error("E006", node.place, {},
+                   fmt::format("a value of {} characters; at most {} are allowed", value.size(),
+                               limits_.text));
+      throw Stop{};
+    }
     finish(std::move(node), anchor);
   }
 
@@ -102,22 +132,28 @@ class Builder final : public YAML::EventHandler {
                  "leave the tag out");
   }
 
-  void count(int nodes, const Place& at) {
+  void count(int nodes, std::size_t bytes, const Place& at) {
     nodes_ += nodes;
-    if (nodes_ <= limits_.nodes) return;
-    found_.error("E006", at, {}, fmt::format("the deck has more than {} values", limits_.nodes),
+    bytes_ += bytes;
+    if (nodes_ <= limits_.nodes && bytes_ <= limits_.bytes) return;
+    found_.error("E006", at, {},
+                 nodes_ > limits_.nodes
+                     ? fmt::format("the deck has more than {} values", limits_.nodes)
+                     : fmt::format("the deck holds more than {} bytes of text", limits_.bytes),
                  "put large tables into a CSV file");
+    throw Stop{};
+  }
+
+  [[noreturn]] void too_deep(const Place& at) {
+    found_.error("E006", at, {},
+                 fmt::format("the deck is nested more than {} levels deep", limits_.depth));
     throw Stop{};
   }
 
   void begin(Node node, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
     node.place = place(mark);
     refuse_tag(tag, node.place);
-    if (static_cast<int>(open_.size()) >= limits_.depth) {
-      found_.error("E006", node.place, {},
-                   fmt::format("the deck is nested more than {} levels deep", limits_.depth));
-      throw Stop{};
-    }
+    if (static_cast<int>(open_.size()) >= limits_.depth) too_deep(node.place);
     open_.push_back({std::move(node), anchor, false, true, {}, {}});
   }
 
@@ -128,8 +164,13 @@ class Builder final : public YAML::EventHandler {
   }
 
   void finish(Node node, YAML::anchor_t anchor) {
-    count(1, node.place);
-    if (anchor != 0) anchored_[anchor] = node;
+    count(1, node.text.size(), node.place);
+    if (anchor != 0) {
+      // The kept copy costs as much as the value: anchors within anchors multiply it.
+      const Weight w = weight_of(node);
+      count(w.nodes, w.bytes, node.place);
+      anchored_[anchor] = node;
+    }
     if (open_.empty()) {
       root_ = std::move(node);
       return;
@@ -152,6 +193,17 @@ class Builder final : public YAML::EventHandler {
     top.keep = false;
     top.key = key.text;
     top.key_place = key.place;
+    if (top.key.size() > limits_.key) {
+      found_.error("E006", key.place, {},
+                   fmt::format("a key of {} characters; at most {} are allowed", top.key.size(),
+                               limits_.key));
+      throw Stop{};
+    }
+    if (static_cast<int>(top.node.entries.size()) >= limits_.keys) {
+      found_.error("E006", key.place, {},
+                   fmt::format("a mapping of more than {} keys", limits_.keys));
+      throw Stop{};
+    }
     if (key.kind != Node::Kind::scalar) {
       found_.error("E004", key.place, {}, fmt::format("a key must be a text, not {}", key.words()));
     } else if (key.text == "<<" && !key.quoted) {
@@ -173,25 +225,43 @@ class Builder final : public YAML::EventHandler {
   std::vector<Open> open_;
   std::map<YAML::anchor_t, Node> anchored_;
   int nodes_ = 0;
+  std::size_t bytes_ = 0;
 };
 
-/// Bytes that YAML does not allow; the library would take some of them for the end of the text.
-bool has_control_characters(const std::string& text, const std::string& name, Diagnostics& found) {
-  int line = 1;
-  int column = 1;
-  for (const char c : text) {
-    if (c == '\n') {
-      ++line;
-      column = 1;
-      continue;
-    }
+/// The place of a byte of the text.
+Place place_of_byte(std::string_view text, std::size_t at, const std::string& name) {
+  const std::string_view before = text.substr(0, at);
+  const std::size_t line_start = before.rfind('\n') + 1;  // npos + 1 = 0
+  return {name, static_cast<int>(std::count(before.begin(), before.end(), '\n')) + 1,
+          static_cast<int>(at - line_start) + 1};
+}
+
+/// Bytes that YAML does not allow, or that are no UTF-8; the library would take some of them for the
+/// end of the text and replace others.
+bool is_no_text(std::string_view text, const std::string& name, Diagnostics& found) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    found.error("E002", {name, 1, 1}, {}, "the file is not UTF-8 but UTF-16",
+                "save it as UTF-8");
+    return true;
+  }
+  const auto is_control = [](char c) {
     const auto byte = static_cast<unsigned char>(c);
-    if ((byte < 0x20 && c != '\t' && c != '\r') || byte == 0x7f) {
-      found.error("E002", {name, line, column}, {},
-                  fmt::format("not a text file: it holds the byte {}", static_cast<int>(byte)));
-      return true;
-    }
-    ++column;
+    return (byte < 0x20 && c != '\t' && c != '\r' && c != '\n') || byte == 0x7f;
+  };
+  const auto control = std::find_if(text.begin(), text.end(), is_control);
+  if (control != text.end()) {
+    const auto at = static_cast<std::size_t>(control - text.begin());
+    found.error("E002", place_of_byte(text, at, name), {},
+                fmt::format("not a text file: it holds the byte {}",
+                            static_cast<int>(static_cast<unsigned char>(*control))));
+    return true;
+  }
+  if (const std::size_t at = invalid_utf8(text); at != std::string_view::npos) {
+    found.error("E002", place_of_byte(text, at, name), {},
+                fmt::format("the file is not UTF-8: it holds the byte 0x{:02X} here",
+                            static_cast<unsigned char>(text[at])),
+                "save it as UTF-8");
+    return true;
   }
   return false;
 }
@@ -206,7 +276,7 @@ std::optional<Node> read_yaml(const std::string& text, const std::string& name, 
                 "put large tables into a CSV file");
     return std::nullopt;
   }
-  if (has_control_characters(text, name, found)) return std::nullopt;
+  if (is_no_text(text, name, found)) return std::nullopt;
   Builder builder(name, found, limits);
   try {
     std::istringstream in(text);
@@ -231,20 +301,33 @@ std::optional<Node> read_yaml(const std::string& text, const std::string& name, 
 }
 
 std::optional<std::string> read_text_file(const std::string& path, const Place& named_at,
-                                          Diagnostics& found) {
-  const auto read_all = [](std::istream& in) {
-    return std::string(std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>());
+                                          Diagnostics& found, bool only_regular,
+                                          std::size_t limit) {
+  const auto read_all = [&](std::istream& in) -> std::optional<std::string> {
+    std::string text;
+    std::array<char, 1 << 16> block;
+    while (in.read(block.data(), block.size()), in.gcount() > 0) {
+      text.append(block.data(), static_cast<std::size_t>(in.gcount()));
+      if (text.size() <= limit) continue;
+      found.error("E006", named_at, {}, fmt::format("'{}' is larger than {} bytes", path, limit),
+                  "put large tables into a CSV file");
+      return std::nullopt;
+    }
+    return text;
   };
   if (path == "-") return read_all(std::cin);
   std::error_code problem;
+  const std::filesystem::file_status status = std::filesystem::status(path, problem);
   std::string why;
-  if (std::filesystem::is_directory(path, problem)) {
+  if (std::filesystem::is_directory(status)) {
     why = "it is a folder";
+  } else if (only_regular && std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+    why = "it is no regular file";
   } else {
     errno = 0;
     std::ifstream in(path, std::ios::binary);
     if (in) {
-      std::string text = read_all(in);
+      std::optional<std::string> text = read_all(in);
       if (!in.bad()) return text;
     }
     why = errno != 0 ? std::strerror(errno) : "unknown reason";

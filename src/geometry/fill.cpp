@@ -1,5 +1,7 @@
 #include "geometry/fill.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <functional>
 #include <string>
@@ -94,15 +96,25 @@ std::vector<Vec3> collect(const Aabb& box, const Vec3& origin, double dp, int di
 }
 
 void refuse_absurd(double expected) {
-  if (expected > largest_fill)
+  if (!(expected <= largest_fill))
     throw Error(ExitCode::usage,
-                "the shape would take about " + std::to_string(expected) +
-                    " particles: is the resolution or a length in the wrong unit?");
+                fmt::format("the shape would take about {:.3g} particles: is the resolution or a length "
+                            "in the wrong unit?",
+                            expected));
 }
 
 double volume(const Aabb& box, int dim) {
   const Vec3 size = (box.hi - box.lo).cwiseMax(0.0);
   return dim == 3 ? size.prod() : size.x() * size.z();
+}
+
+/// A lattice may be larger than what is taken of it, as for thin shells.
+constexpr double largest_lattice = 64.0 * largest_fill;
+
+/// Points of the lattice in a box; at least one along each side, however thin the box is.
+double lattice_points(const Aabb& box, double dp, int dim) {
+  const Vec3 sides = ((box.hi - box.lo) / dp).cwiseMax(1.0);
+  return dim == 3 ? sides.prod() : sides.x() * sides.z();
 }
 
 Vec3 default_origin(const Shape& shape, const Aabb& clip) {
@@ -143,8 +155,9 @@ std::vector<Vec3> fill_lattice(const Shape& shape, double dp, int dim, const Aab
   const Aabb box = in_scene(clipped(shape.box(), clip), dim);
   if (box.empty()) return {};
   refuse_unbounded(box);
-  if (volume(box, dim) / std::pow(dp, dim) > largest_fill)
-    refuse_absurd(estimate_fill(shape, dp, dim, clip));
+  const double lattice = lattice_points(box, dp, dim);
+  if (!(lattice <= largest_lattice)) refuse_absurd(lattice);
+  if (lattice > largest_fill) refuse_absurd(estimate_fill(shape, dp, dim, clip));
   return collect(box, origin.value_or(default_origin(shape, clip)), dp, dim, [&](const Vec3& p) {
     const double d = distance_bound(shape, p);
     if (std::abs(d) <= 1e-9 * dp) return Verdict{on_inner_seam(shape, p, 1e-4 * dp, dim == 2), 0.0};
@@ -159,8 +172,8 @@ std::vector<Vec3> fill_layers(const Shape& shape, double dp, int dim, double thi
   const Aabb box = in_scene(clipped(around, clip), dim);
   if (box.empty()) return {};
   refuse_unbounded(box);
-  if (volume(box, dim) / std::pow(dp, dim) > 64.0 * largest_fill)
-    refuse_absurd(volume(box, dim) / std::pow(dp, dim));
+  if (const double lattice = lattice_points(box, dp, dim); !(lattice <= largest_lattice))
+    refuse_absurd(lattice);
   const double slack = 1e-9 * dp;
   const auto* plain_box = dynamic_cast<const Box*>(&shape);
   return collect(box, default_origin(shape, clip), dp, dim, [&](const Vec3& p) {

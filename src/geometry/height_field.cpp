@@ -3,6 +3,7 @@
 
 #include "core/csv_table.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "geometry/scene_check.h"
 #include "geometry/shapes.h"
 
@@ -54,6 +55,7 @@ void HeightField::prepare() {
   const auto fail = [&](const std::string& what) {
     throw Error(ExitCode::usage, where + ": " + what);
   };
+  constexpr double longest = 1e12;  // m; products of four lengths stay in the range of a double
   std::size_t nx = 0, ny = 0;
   if (file) {
     const CsvTable table = read_csv_table(file->path);
@@ -75,7 +77,11 @@ void HeightField::prepare() {
   for (double& v : grid_) {
     if (!std::isfinite(v)) fail("a height is missing or not finite");
     v = scale * v + origin.z();
+    if (!(std::abs(v) <= longest)) fail("a height of " + exact(v) + " m: is `scale` right?");
   }
+  const double end = std::max(std::abs(origin.x()) + static_cast<double>(nx) * spacing,
+                              std::abs(origin.y()) + static_cast<double>(ny) * spacing_y.value_or(spacing));
+  if (!(end <= longest)) fail("the terrain reaches " + exact(end) + " m: is `spacing` right?");
   nx_ = static_cast<int>(nx);
   ny_ = static_cast<int>(ny);
   dy_ = spacing_y.value_or(spacing);

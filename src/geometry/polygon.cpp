@@ -35,7 +35,7 @@ Schema<Polygon> Polygon::schema() {
                     "without end where they are not given.");
   s.required("points", &Polygon::points, unit::length,
              "The corners in order around the outline, in either sense; y is ignored.")
-      .items(3);
+      .items(3, 5000);
   s.optional("y_min", &Polygon::y_min, unit::length, "One end in 3D; ignored in 2D.");
   s.optional("y_max", &Polygon::y_max, unit::length, "The other end in 3D; ignored in 2D.");
   s.check(check_polygon);
@@ -48,7 +48,7 @@ Schema<Prism> Prism::schema() {
       "A polygon in the x-z plane extended along y from y_min to y_max; in 2D the polygon.");
   s.required("points", &Polygon::points, unit::length,
              "The corners in order around the outline, in either sense; y is ignored.")
-      .items(3);
+      .items(3, 5000);
   s.required("y_min", &Polygon::y_min, unit::length, "One end; ignored in 2D.");
   s.required("y_max", &Polygon::y_max, unit::length, "The other end; ignored in 2D.");
   s.check([](Prism& p, CheckContext& c) { check_polygon(p, c); });

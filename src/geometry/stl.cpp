@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/text.h"
 #include "geometry/scene_check.h"
 #include "geometry/shapes.h"
 #include "geometry/stl_file.h"
@@ -76,7 +77,13 @@ void Stl::prepare() {
     p = turn * (scale * p) + translate;
     around.extend(p);
   }
-  const Index dropped = weld(mesh, weld_tolerance.value_or(1e-6 * (around.hi - around.lo).norm()));
+  // Beyond these lengths products of four of them leave the range of a double.
+  constexpr double longest = 1e12, shortest = 1e-12;
+  const double size = (around.hi - around.lo).norm(), reach = around.lo.cwiseAbs().cwiseMax(around.hi.cwiseAbs()).maxCoeff();
+  if (!(reach <= longest && size >= shortest))
+    throw IoError(file.path, "the surface is " + exact(size) + " m across and reaches " + exact(reach) +
+                                 " m from the origin: is 'scale' right?");
+  const Index dropped = weld(mesh, weld_tolerance.value_or(1e-6 * size));
   if (mesh.faces.empty())
     throw IoError(file.path, "no triangle is left after welding: is weld_tolerance too large?");
   health_ = repair_orientation(mesh);

@@ -1,21 +1,25 @@
 #include "geometry/stl_file.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <string_view>
 
+#include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/text.h"
 
 namespace sphgeo {
 
 namespace {
 
 constexpr std::size_t header_bytes = 80, face_bytes = 50;
+constexpr std::size_t max_faces = 10'000'000;
+constexpr std::uint64_t max_bytes = std::uint64_t{4} << 30;
 
 std::uint32_t read_u32(const char* at) {
   std::uint32_t v = 0;
@@ -31,6 +35,8 @@ float read_f32(const char* at) {
 }
 
 void add_face(Triangles& mesh, const std::array<Vec3, 3>& corners, const std::string& path) {
+  if (mesh.faces.size() >= max_faces)
+    throw IoError(path, "more than " + std::to_string(max_faces) + " triangles: use a coarser surface");
   const auto first = static_cast<std::int32_t>(mesh.points.size());
   for (const Vec3& c : corners) {
     if (!c.allFinite())
@@ -49,8 +55,8 @@ Triangles read_binary(const std::string& bytes, const std::string& path) {
                             " triangles (" + std::to_string(expected) + " bytes) but it has " +
                             std::to_string(bytes.size()) + " bytes");
   Triangles mesh;
-  mesh.points.reserve(3 * count);
-  mesh.faces.reserve(count);
+  mesh.points.reserve(3 * std::min(count, max_faces));
+  mesh.faces.reserve(std::min(count, max_faces));
   for (std::size_t f = 0; f < count; ++f) {
     const char* corner = bytes.data() + header_bytes + 4 + face_bytes * f + 12;  // after the normal
     std::array<Vec3, 3> c;
@@ -83,7 +89,7 @@ class Words {
     double v = 0.0;
     const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), v);
     if (status != std::errc() || end != word.data() + word.size())
-      fail("expected a number, found '" + std::string(word) + "'");
+      fail("expected a number, found '" + shortened(word, 60) + "'");
     return v;
   }
   [[noreturn]] void fail(const std::string& what) const {
@@ -125,10 +131,7 @@ Triangles read_text(const std::string& text, const std::string& path) {
 }  // namespace
 
 Triangles read_stl(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw IoError(path, std::string("cannot open the STL file: ") + std::strerror(errno));
-  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  if (in.bad()) throw IoError(path, "cannot read the STL file");
+  const std::string bytes = read_file(path, max_bytes);
   // Some binary files begin with "solid" too, so the size decides first, then the first words.
   const bool has_header = bytes.size() >= header_bytes + 4;
   const bool size_fits =

@@ -1,6 +1,7 @@
 #include "geometry/triangle_mesh.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -35,6 +36,11 @@ struct CellHash {
 }  // namespace
 
 Index weld(Triangles& mesh, double tolerance) {
+  // Below the spacing of the numbers themselves only equal corners are near, and cells that small
+  // could not be counted.
+  double largest = 0.0;
+  for (const Vec3& p : mesh.points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  if (tolerance < 1e-17 * largest) tolerance = 0.0;
   // Cells as wide as the tolerance: partners lie in the 27 cells around a corner. The first corner
   // of a cluster stays, so the result depends only on the order in the file.
   const double width = tolerance > 0.0 ? tolerance : 1e-300;

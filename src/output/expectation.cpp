@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/csv_table.h"
+#include "core/error.h"
 #include "deck/model.h"
 #include "output/reduction.h"
 #include "output/series.h"
@@ -109,10 +110,14 @@ ExpectResult evaluate(const Expect& e, const SeriesLookup& series) {
   const auto values =
       source.column.empty() ? source.series->column(0) : source.series->column(source.column);
   const Samples samples = cut(source.series->times(), values, e.from, e.to);
-  if (e.reduce == "curve")
-    measure_curve(e, samples, result);
-  else
-    measure_number(e, samples, result);
+  try {
+    if (e.reduce == "curve")
+      measure_curve(e, samples, result);
+    else
+      measure_number(e, samples, result);
+  } catch (const Error& error) {  // the results of the run must not be lost with its reference
+    result.note = error.what();
+  }
   judge(e, result);
   return result;
 }

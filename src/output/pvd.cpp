@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <string_view>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "output/vtu.h"
 
 namespace sphgeo {
@@ -35,13 +38,16 @@ PvdFile PvdFile::resume(const std::string& path, double last_time) {
   PvdFile pvd(path);
   const std::string text = read_file(path);
   for (std::size_t at = text.find("<DataSet"); at != std::string::npos;
-       at = text.find("<DataSet", at + 1)) {
-    const std::string_view line = std::string_view(text).substr(at, text.find("/>", at) - at);
+       at = text.find("<DataSet", std::min(text.size(), text.find('\n', at)))) {
+    // Our own elements are one short line each.
+    const std::string_view line = std::string_view(text).substr(at, text.find('\n', at) - at);
+    if (line.find("/>") == std::string_view::npos)
+      throw IoError(path, "a frame without an end: not written by sphgeo, or damaged");
     const std::string stamp = attribute(line, "timestep", path);
     double time = 0;
     const auto [end, error] = std::from_chars(stamp.data(), stamp.data() + stamp.size(), time);
-    if (error != std::errc{} || end != stamp.data() + stamp.size())
-      throw IoError(path, fmt::format("the time '{}' is not a number", stamp));
+    if (error != std::errc{} || end != stamp.data() + stamp.size() || !std::isfinite(time))
+      throw IoError(path, fmt::format("the time '{}' is not a number", shortened(stamp, 60)));
     pvd.frames_.push_back({time, attribute(line, "file", path)});
   }
   pvd.truncate_after(last_time);

@@ -9,6 +9,7 @@
 
 #include "core/atomic_file.h"
 #include "core/csv_table.h"
+#include "core/error.h"
 
 namespace sphgeo {
 
@@ -27,10 +28,19 @@ void Series::write_to(const std::string& path, double flush_seconds) {
 
 void Series::resume(const std::string& path, std::uint64_t offset, double flush_seconds) {
   csv_ = CsvWriter::resume(path, name_, csv_columns(), offset, flush_seconds);
-  const CsvTable table = parse_csv_table(read_file(path), path);
-  times_ = table.numbers(table.names().front());
-  for (std::size_t c = 0; c < columns_.size(); ++c)
-    values_[c] = table.numbers(table.names()[c + 1]);
+  try {
+    const CsvTable table = read_csv_table(path);
+    times_ = table.numbers(table.names().front());
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+      values_[c] = table.numbers(table.names()[c + 1]);
+  } catch (const TableError& e) {
+    throw IoError(path, std::string("changed since it was written: ") + e.what());
+  }
+  for (std::size_t k = 0; k < times_.size(); ++k)
+    if (!std::isfinite(times_[k]) || (k > 0 && times_[k] < times_[k - 1]))
+      throw IoError(path, fmt::format("changed since it was written: the time of row {} does not "
+                                      "follow that of the row before",
+                                      k + 1));
 }
 
 void Series::add(double time, std::span<const double> values) {

@@ -25,7 +25,7 @@ namespace {
 /// The particles of one body before they join their set.
 struct BodyPoints {
   std::vector<Vec3> at;
-  double volume;  ///< of one particle
+  double volume = 0;  ///< of one particle
 };
 
 BodyPoints fill_body(const Body& body, const Model& model) {
@@ -71,8 +71,14 @@ void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
     const Body& body = model.bodies[b];
     const MaterialSpec* material = model.material(body.material);
     if (!material || material->phase() != "water") continue;
-    const BodyPoints filling = fill_body(body, model);
     const std::string path = fmt::format("bodies[{}]", b);
+    BodyPoints filling;
+    try {
+      filling = fill_body(body, model);
+    } catch (const Error& e) {  // without end, or too large to fill
+      found.error("E113", model.place_of(path + ".shape"), path + ".shape", e.what());
+      continue;
+    }
     if (filling.at.empty())
       found.error("E110", model.place_of(path + ".shape"), path + ".shape", "the body holds no particle",
                   fmt::format("it is smaller than the resolution of {} m, or lies outside the plane of a 2D scene", model.resolution));
@@ -103,7 +109,7 @@ void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
 }
 
 template <int Dim>
-void add_walls(Scene<Dim>& scene, const Model& model, Filling fill) {
+void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics& found) {
   if (model.boundaries.empty()) return;
   bool moves = false;
   for (const auto& b : model.boundaries) {
@@ -118,9 +124,15 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill) {
   if (fill == Filling::none) return;
   const Placement placement{dp, support_radius(model), Dim};
   std::vector<WallPart> parts;
-  for (const auto& boundary : model.boundaries) {
-    const auto& wall = dynamic_cast<const WallBoundary&>(*boundary);
-    parts.push_back({wall.points(placement), wall.solid(placement), !wall.motion});
+  for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
+    const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
+    parts.push_back({{}, wall.solid(placement), !wall.motion});
+    try {
+      parts.back().points = wall.points(placement);
+    } catch (const Error& e) {
+      const std::string path = fmt::format("boundaries[{}]", b);
+      found.error("E113", model.place_of(path), path, e.what());
+    }
   }
   join_walls<Dim>(parts, dp, support_radius(model));
   for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
@@ -198,7 +210,7 @@ Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling) 
     scene.sound.value = 1;
   }
   add_water(scene, model, filling, found);
-  add_walls(scene, model, filling);
+  add_walls(scene, model, filling, found);
   if (filling != Filling::none) set_domain(*scene.world, model);
   return scene;
 }

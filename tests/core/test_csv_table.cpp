@@ -67,6 +67,13 @@ TEST_SUITE("core") {
     CHECK(failure("a,b\n1,2\n", "b").empty());
   }
 
+  TEST_CASE("a table that would fill the memory is refused") {
+    CHECK(parse_csv_table("1,2\n3,4\n", "t.csv", 4).rows() == 2);
+    CHECK_THROWS_WITH_AS(parse_csv_table("1,2\n3,4\n5,6\n", "t.csv", 4),
+                         "t.csv:3: more than 4 cells", TableError);
+    CHECK(failure(std::string(5000, ',') + "\n").find("more than 4096 columns") != std::string::npos);
+  }
+
   TEST_CASE("a missing table is an input-output failure") {
     CHECK_THROWS_WITH_AS(read_csv_table("/nowhere/t.csv"),
                          "/nowhere/t.csv: cannot open the file: No such file or directory",

@@ -54,6 +54,29 @@ TEST_SUITE("core") {
     for (const double v : {1.0 / 3.0, 1e-300, -2.5e17, 0.1 + 0.2}) CHECK(std::stod(exact(v)) == v);
   }
 
+  TEST_CASE("texts are cut between characters") {
+    CHECK(shortened("abc", 3) == "abc");
+    CHECK(shortened("abcd", 3) == "abc...");
+    CHECK(shortened("a\xC3\xA4" "b", 2) == "a...");
+    CHECK(shortened("\xE6\xB0\xB4\xE6\xB0\xB4", 4) == "\xE6\xB0\xB4...");
+    CHECK(shortened("\x80\x80\x80", 2) == "...");
+  }
+
+  TEST_CASE("bytes that are no UTF-8 are found") {
+    constexpr auto none = std::string_view::npos;
+    CHECK(invalid_utf8("plain \xC3\xA4 \xE6\xB0\xB4 \xF0\x9F\x8C\x8A \xEF\xBF\xBF \xF4\x8F\xBF\xBF") == none);
+    CHECK(invalid_utf8("") == none);
+    CHECK(invalid_utf8("ab\xF6" "d") == 2);
+    CHECK(invalid_utf8("a\x80") == 1);
+    CHECK(invalid_utf8("a\xC3") == 1);              // cut short
+    CHECK(invalid_utf8("\xC0\xAF") == 0);          // longer than needed
+    CHECK(invalid_utf8("\xE0\x9F\xBF") == 0);
+    CHECK(invalid_utf8("\xF0\x8F\xBF\xBF") == 0);
+    CHECK(invalid_utf8("\xED\xA0\x80") == 0);     // a surrogate
+    CHECK(invalid_utf8("\xF4\x90\x80\x80") == 0);  // beyond U+10FFFF
+    CHECK(invalid_utf8("\xFF\xFE") == 0);
+  }
+
   TEST_CASE("trimming drops blanks at both ends") {
     CHECK(trimmed("  a b \n") == "a b");
     CHECK(trimmed(" \t").empty());

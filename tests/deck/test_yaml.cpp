@@ -87,6 +87,43 @@ TEST_SUITE("deck") {
     CHECK(finding(bomb).substr(0, 4) == "E006");
   }
 
+  TEST_CASE("what aliases and anchors cost is counted") {
+    YamlLimits limits;
+    limits.bytes = 3000;
+    const std::string text(500, 't');
+    CHECK(finding("a: &a " + text + "\nb: [*a, *a]\n", limits) == "findings: 0");
+    CHECK(finding("a: &a " + text + "\nb: [*a, *a, *a, *a, *a]\n", limits) == "E006@2:17");
+    limits = {};
+    limits.nodes = 100;
+    std::string list;
+    for (int k = 0; k < 30; ++k) list += "1,";
+    CHECK(finding("a: &a [" + list + "]\n", limits) == "findings: 0");
+    CHECK(finding("a: &a [&b [&c [" + list + "]]]\n", limits).substr(0, 4) == "E006");
+    limits = {};
+    limits.depth = 5;
+    CHECK(finding("a: &a [[1]]\nb: [[*a]]\n", limits) == "findings: 0");
+    CHECK(finding("a: &a [[1]]\nb: [[[*a]]]\n", limits) == "E006@2:7");
+  }
+
+  TEST_CASE("long values, long keys and many keys are refused at their place") {
+    YamlLimits limits;
+    limits.text = 20;
+    limits.key = 5;
+    limits.keys = 3;
+    CHECK(finding("a: 12345678901234567890\n", limits) == "findings: 0");
+    CHECK(finding("a: b\nc: 123456789012345678901\n", limits) == "E006@2:4");
+    CHECK(finding("abcdef: 1\n", limits) == "E006@1:1");
+    CHECK(finding("a: 1\nb: 1\nc: 1\n", limits) == "findings: 0");
+    CHECK(finding("a: 1\nb: 1\nc: 1\nd: 1\n", limits) == "E006@4:1");
+  }
+
+  TEST_CASE("other encodings than UTF-8 are named") {
+    CHECK(finding("a: 1\nb: 'gr\xF6\xDF'\n") == "E002@2:7");
+    CHECK(finding(std::string("\xFF\xFE" "a\0:\0", 6)) == "E002@1:1");
+    CHECK(finding(std::string("\xFE\xFF\0a\0:", 6)) == "E002@1:1");
+    CHECK(finding("a: 'gr\xC3\xB6\xC3\x9F'\n") == "findings: 0");
+  }
+
   TEST_CASE("an empty text is nothing, comments and a leading --- are fine") {
     CHECK(tree("").kind == Node::Kind::null);
     CHECK(tree("# only a comment\n").kind == Node::Kind::null);
@@ -126,7 +163,12 @@ TEST_SUITE("deck") {
     Diagnostics found;
     CHECK_FALSE(read_text_file("/no/such/file", {}, found).has_value());
     CHECK_FALSE(read_text_file("/", {}, found).has_value());
-    REQUIRE(found.items().size() == 2);
+    CHECK_FALSE(read_text_file("/dev/null", {}, found, true).has_value());
+    CHECK_FALSE(read_text_file("/dev/zero", {}, found, false, 1000).has_value());
+    CHECK(read_text_file("/dev/null", {}, found) == "");
+    REQUIRE(found.items().size() == 4);
+    CHECK(found.items()[2].message.find("no regular file") != std::string::npos);
+    CHECK(found.items()[3].id == "E006");
     CHECK(found.items()[0].id == "E001");
     CHECK(found.items()[0].message.find("No such file") != std::string::npos);
     CHECK(found.items()[1].message.find("folder") != std::string::npos);

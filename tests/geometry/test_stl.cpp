@@ -198,6 +198,21 @@ TEST_SUITE("geometry") {
     CHECK(wedge.shape->signed_distance({0.2, 0.1, 0.2}) > 0.0);
   }
 
+  TEST_CASE("stl: sizes beyond reason are refused, fine tolerances are not") {
+    const TemporaryFile file("sizes.stl");
+    write_stl(file.path, cube_mesh());
+    Stl s;
+    s.file.path = file.path;
+    for (const double scale : {1e13, 1e-13, 1e300, 1e-300}) {
+      s.scale = scale;
+      CHECK_THROWS_WITH(s.prepare(), doctest::Contains("is 'scale' right?"));
+    }
+    s.scale = 1e11;
+    s.weld_tolerance = 1e-300;  // cells this small could not be counted
+    s.prepare();
+    CHECK(s.signed_distance({5e10, 5e10, 5e10}) == doctest::Approx(-5e10));
+  }
+
   TEST_CASE("stl: broken files are refused with their path") {
     const TemporaryFile file("broken.stl");
     CHECK_THROWS_AS(read_stl(file.path), IoError);

@@ -119,5 +119,12 @@ TEST_SUITE("output") {
     again.add(1, Row{7, 7});
     CHECK(read_csv_table(folder / "gauge.csv").numbers("p").size() == 3);
     CHECK(read_csv_table(folder / "gauge.csv").numbers("level")[2] == 7);
+
+    for (const char* damage : {"0.2,1,2\n", ",1,2\n", "a,1,2\n", "2,1\n"}) {
+      const std::string text = read_file(folder / "gauge.csv") + damage;
+      write_file_atomically(folder / "damaged.csv", text);
+      Series damaged("gauge", series.columns());
+      CHECK_THROWS_AS(damaged.resume(folder / "damaged.csv", text.size(), 0), IoError);
+    }
   }
 }

@@ -124,6 +124,10 @@ TEST_SUITE("output") {
     CHECK_THROWS_AS(PvdFile::resume(folder / "a.pvd", 1), IoError);
     write_file_atomically(folder / "a.pvd", "<DataSet timestep=\"1\"/>");
     CHECK_THROWS_AS(PvdFile::resume(folder / "a.pvd", 1), IoError);
+    write_file_atomically(folder / "a.pvd", "<DataSet timestep=\"nan\" file=\"a\"/>");
+    CHECK_THROWS_AS(PvdFile::resume(folder / "a.pvd", 1), IoError);
+    write_file_atomically(folder / "a.pvd", "<DataSet timestep=\"1\" file=\"a\"\n/>");
+    CHECK_THROWS_AS(PvdFile::resume(folder / "a.pvd", 1), IoError);
     CHECK_THROWS_AS(PvdFile::resume(folder / "none.pvd", 1), IoError);
   }
 
