@@ -79,8 +79,8 @@ class Builder final : public YAML::EventHandler {
     copy.place = place(mark);
     const Weight w = weight_of(copy);
     if (static_cast<int>(open_.size()) + w.depth > limits_.depth) too_deep(copy.place);
-    // finish() counts the value itself, as one node.
-    count(w.nodes - 1, w.bytes, copy.place);
+    // finish() counts the value itself, one node and its text.
+    count(w.nodes - 1, w.bytes - copy.text.size(), copy.place);
     finish(std::move(copy), 0);
   }
 
