@@ -22,7 +22,7 @@ materials: [{name: water, type: water, sound_speed: 10}]
 bodies: [{name: drop, material: water, shape: {type: box, min: [0, 0, 0], max: [0.4, 1, 0.4]}}]
 boundaries: [{name: tank, type: tank, min: [0, 0, 0], max: [0.8, 1, 0.8], open: [top]}]
 probes: [{name: energy, type: energy, every: 2 ms}]
-output: {frames: {every: 4 ms}, run_every: 2 ms}
+output: {frames: {every: 4 ms}, run_every: 2 ms, checkpoint_every: 0}
 expect: [{name: kept, probe: energy, reduce: last, reference: 0, tolerance: 1e9, tolerance_kind: absolute}]
 """
 # What each kind of call may fail with.
@@ -73,6 +73,10 @@ class Faults(unittest.TestCase):
                 self.assertTrue(data.endswith(b"</VTKFile>\n"), name)
             elif path.suffix == ".json":
                 json.loads(data)
+            elif path.suffix == ".h5":
+                mark = b"\nsphgeo checkpoint 1 "
+                self.assertTrue(data[-72:].startswith(mark), name)
+                self.assertEqual(int(data[-72 + len(mark):][:16], 16), len(data) - 72, name)
             elif path.suffix == ".csv":
                 text = data.decode()
                 self.assertTrue(text == "" or text.endswith("\n"), name)
@@ -94,6 +98,11 @@ class Faults(unittest.TestCase):
             folder = Path(name) / "run"
             done = self.run_deck(folder, fault=f"{kind}:{n}{more}:{error}")
             self.check_refused(done, folder, error)
+            # What is there suffices to go on.
+            done_later = self.run_deck(folder, "--resume")
+            self.assertEqual(done_later.returncode, 0, done_later.stderr)
+            self.check_whole(folder)
+            self.assertEqual({p.name: p.read_bytes() for p in (folder / "frames").iterdir()}, self.frames)
             return done.stderr
 
     def test_a_sound_run_calls_all_of_them(self):

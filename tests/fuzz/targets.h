@@ -43,5 +43,6 @@ void run_set(std::string_view input);
 void run_stl(std::string_view input);
 void run_csv(std::string_view input);
 void run_resume(std::string_view input);
+void run_checkpoint(std::string_view input);
 
 }  // namespace sphgeo::fuzz
