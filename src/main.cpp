@@ -191,7 +191,12 @@ int main(int argc, char** argv) {
   add_deck(check_app, check.deck, check.set);
   check_app->add_flag("--explain", check.explain,
                       "print the plan: what runs and why, lists, fields, memory");
-  check_app->add_flag("--json", check.json, "the same as JSON");
+  check_app->add_flag("--json", check.json, "the plan and the forecast as JSON");
+  check_app->add_flag("!--no-calibrate", check.calibrate,
+                      "do not time a few steps: the forecast says nothing of the time");
+  check_app->add_option("--threads", check.threads, "number of threads of the forecast run")
+      ->check(whole)
+      ->type_name("N");
   check_app->callback([&] { code = run_guarded([&] { return check_command(check); }); });
 
   CLI::App* list_app =

@@ -10,6 +10,7 @@
 #include "core/types.h"
 #include "deck/interfaces.h"
 #include "deck/schema.h"
+#include "geometry/fill.h"
 
 namespace sphgeo {
 
@@ -37,6 +38,11 @@ struct WallBoundary : BoundarySpec {
 
   /// The wall particles at t = 0, in a fixed order.
   virtual std::vector<WallPoint> points(const Placement&) const = 0;
+  /// About how many they are, without placing them; not finite when nothing bounds them.
+  virtual double expected_points(const Placement& p) const {
+    const auto shape = solid(p);
+    return shape ? estimate_layers(*shape, p.spacing, p.dimension, p.thickness, LayerSide::inside, p.clip) : 0.0;
+  }
   /// The solid as a shape, for checks and pictures; null when it has none.
   virtual std::shared_ptr<const Shape> solid(const Placement&) const = 0;
 

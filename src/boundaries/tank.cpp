@@ -116,6 +116,24 @@ struct Tank final : WallBoundary {
     return wall;
   }
 
+  /// Particles along one axis, in all and inside.
+  std::pair<double, double> axis_count(int k, const Placement& p) const {
+    if (k == 1 && p.dimension == 2) return {1, 1};
+    const double inside = std::max(1.0, std::round((max[k] - min[k]) / p.spacing));
+    const double layers = std::ceil(p.thickness / p.spacing - 1e-9);
+    return {inside + (is_open(k, false) ? 0 : layers) + (is_open(k, true) ? 0 : layers), inside};
+  }
+
+  double expected_points(const Placement& p) const override {
+    double all = 1, within = 1;
+    for (int k = 0; k < 3; ++k) {
+      const auto [n, inside] = axis_count(k, p);
+      all *= n;
+      within *= inside;
+    }
+    return all - within;
+  }
+
   std::shared_ptr<const Shape> solid(const Placement& p) const override {
     auto outer = std::make_shared<Box>(), inner = std::make_shared<Box>();
     outer->flat = inner->flat = p.dimension == 2;

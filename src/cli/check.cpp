@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 
+#include <chrono>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.h"
+#include "cli/forecast.h"
 #include "cli/recorder.h"
 #include "core/error.h"
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "scene/build.h"
 #include "scene/cross_check.h"
@@ -13,12 +17,7 @@
 namespace sphgeo {
 namespace {
 
-std::string bytes_text(std::size_t bytes) {
-  const double b = static_cast<double>(bytes);
-  if (b < 1e6) return fmt::format("{:.1f} kB", b / 1e3);
-  if (b < 1e9) return fmt::format("{:.1f} MB", b / 1e6);
-  return fmt::format("{:.2f} GB", b / 1e9);
-}
+using clock_type = std::chrono::steady_clock;
 
 nlohmann::ordered_json plan_json(const auto& world, const auto& plan) {
   nlohmann::ordered_json j;
@@ -52,7 +51,7 @@ void print_plan(const nlohmann::ordered_json& j) {
   fmt::print("neighbor lists\n");
   for (const auto& l : j["lists"])
     fmt::print("  {} -> {}: {} pairs, {}\n", l["target"].get<std::string>(), l["source"].get<std::string>(),
-               l["pairs"].get<long>(), bytes_text(l["bytes"].get<std::size_t>()));
+               l["pairs"].get<long>(), bytes_text(l["bytes"].get<double>()));
   fmt::print("fields\n");
   std::string set;
   for (const auto& f : j["fields"]) {
@@ -60,11 +59,27 @@ void print_plan(const nlohmann::ordered_json& j) {
     set = f["set"];
     fmt::print(" {}({})", f["name"].get<std::string>(), f["lifetime"].get<std::string>());
   }
-  fmt::print("\nmemory {}\n", bytes_text(j["memory_bytes"].get<std::size_t>()));
+  fmt::print("\nmemory {}\n", bytes_text(j["memory_bytes"].get<double>()));
+}
+
+/// What a run would cost; with the time unless `--no-calibrate`. Moves the world on.
+template <int Dim>
+std::optional<Forecast> forecast_of(World<Dim>& world, Plan<Dim>& plan, const SoundSpeed& sound, const std::vector<Wish>& wishes,
+                                    std::uint64_t base, const CheckOptions& options, clock_type::time_point start) {
+  if (world.sets().empty()) return std::nullopt;
+  const double started = std::chrono::duration<double>(clock_type::now() - start).count();
+  const ForecastBasis basis(world, plan, sound, wishes, base);
+  std::optional<MeasuredCosts> costs;
+  if (options.calibrate && basis.advection_steps() > 0) {
+    costs = measure_costs<Dim>(world, plan, wishes, started, basis.advection_steps());
+    if (!costs) std::cerr << "warning: the scene does not survive its first steps, so that nothing is said about the time\n";
+  }
+  return basis(costs);
 }
 
 template <int Dim>
-int check(const Model& model, const CheckOptions& options) {
+int check(const Model& model, const CheckOptions& options, clock_type::time_point start) {
+  const std::uint64_t base = resident_memory();
   Diagnostics found = model.warnings;
   Scene<Dim> scene = build_scene<Dim>(model, found);
   check_scene(scene, found);
@@ -73,7 +88,12 @@ int check(const Model& model, const CheckOptions& options) {
   World<Dim>& world = *scene.world;
   std::vector<std::string> names;
   for (const auto& set : world.sets()) names.push_back(set->name());
-  Plan<Dim> plan(world, wishes_of(model, names));
+  Index moving = 0;
+  for (const auto& set : world.sets())
+    if (set->phase() != "wall") moving += set->size();
+  set_threads(sensible_threads(moving, options.threads));
+  const std::vector<Wish> wishes = wishes_of(model, names);
+  Plan<Dim> plan(world, wishes);
   world.rearrange();
 
   nlohmann::ordered_json j = plan_json(world, plan);
@@ -85,6 +105,8 @@ int check(const Model& model, const CheckOptions& options) {
   }
   j["particles"] = particles;
   j["sound_speed"] = {{"value", scene.sound.value}, {"max_speed", scene.sound.max_speed}, {"because", scene.sound.because}};
+  const std::optional<Forecast> forecast = forecast_of<Dim>(world, plan, scene.sound, wishes, base, options, start);
+  if (forecast) j["forecast"] = to_json(*forecast);
   if (options.json) {
     std::cout << j.dump(2) << "\n";
     return 0;
@@ -96,6 +118,7 @@ int check(const Model& model, const CheckOptions& options) {
   if (world.find("water"))
     fmt::print("  speed of sound {:.4g} m/s: {}\n", scene.sound.value, scene.sound.because);
   if (options.explain) print_plan(j);
+  if (forecast) fmt::print("{}", render_forecast(*forecast, model.resolution));
   fmt::print("the deck is sound\n");
   return 0;
 }
@@ -103,8 +126,10 @@ int check(const Model& model, const CheckOptions& options) {
 }  // namespace
 
 int check_command(const CheckOptions& options) {
+  const auto start = clock_type::now();
   const Model model = read_deck(options.deck, options.set);
-  return model.dimension == 2 ? check<2>(model, options) : check<3>(model, options);
+  refuse_too_large(model);
+  return model.dimension == 2 ? check<2>(model, options, start) : check<3>(model, options, start);
 }
 
 }  // namespace sphgeo

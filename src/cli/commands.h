@@ -26,6 +26,8 @@ struct CheckOptions {
   std::vector<std::string> set;
   bool explain = false;
   bool json = false;
+  bool calibrate = true;    ///< time a few steps for the forecast
+  int threads = 0;          ///< that the run would have; 0: a sensible number for the scene
 };
 int check_command(const CheckOptions& options);
 

@@ -6,10 +6,12 @@
 #include <thread>
 
 #include "cli/commands.h"
+#include "cli/forecast.h"
 #include "cli/keeper.h"
 #include "cli/recorder.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/memory.h"
 #include "core/parallel.h"
 #include "output/progress.h"
 #include "scene/build.h"
@@ -54,6 +56,7 @@ class DeckRun {
     const FolderLock lock(options_.folder);
     FoundCheckpoint checkpoint = checkpoint_of(options_, model_);
     const StateSource* resumed = checkpoint.reader.get();
+    const std::uint64_t base = resident_memory();
     Scene<Dim> scene = make_scene(resumed);
     World<Dim>& world = *scene.world;
     std::vector<std::string> names;
@@ -64,7 +67,8 @@ class DeckRun {
                                             : options_.overwrite || options_.resume ? ExistingResults::overwrite
                                                                                     : ExistingResults::refuse);
     StopRequests requests(folder.stop_file(), options_.limits);
-    Plan<Dim> plan(world, wishes_of(model_, names));
+    const std::vector<Wish> wishes = wishes_of(model_, names);
+    Plan<Dim> plan(world, wishes);
     if (resumed) {
       world.load(*resumed);
       plan.load(*resumed);
@@ -87,10 +91,13 @@ class DeckRun {
     set_threads(sensible_threads(particles, options_.threads));
     Keeper<Dim> keeper({world, plan, stepper, recorder}, folder, wall_before_);
 
+    RunForecast<Dim> forecast(world, plan, stepper, scene.sound, wishes, base);
     RunHooks hooks;
     hooks.at_safe_point = [&] {
+      forecast.arrive(seconds_since(start_));
       recorder.observe(wall_before_ + seconds_since(start_), world.clock.time >= model_.end_time);
       progress_.update(progress_of(model_, world.clock, particles, seconds_since(start_)));
+      forecast.leave(recorder.time_rows());
       return true;
     };
     hooks.before_rearranging = [&] {
@@ -111,6 +118,7 @@ class DeckRun {
       recorder.write_frame();
     }
     progress_.clear();
+    summary_.forecast = forecast.result();
     finish({world, plan, stepper, recorder}, keeper, folder, failure);
     return summary_.exit_code;
   }
@@ -174,6 +182,7 @@ class DeckRun {
       summary_.guard.place = where.place;
       summary_.guard.time = where.time;
     }
+    summary_.disk_bytes = folder_bytes(options_.folder);
     write_summary(folder.summary(), summary_);
     report(world, folder);
   }
@@ -219,6 +228,7 @@ int sensible_threads(long particles, int asked) {
 int run_command(const RunOptions& options) {
   const auto start = clock_type::now();
   const Model model = read_deck(options.deck, options.set);
+  refuse_too_large(model);
   if (model.dimension == 2) return DeckRun<2>(model, options, start)();
   return DeckRun<3>(model, options, start)();
 }

@@ -126,14 +126,14 @@ Vec3 default_origin(const Shape& shape, const Aabb& clip) {
 
 }  // namespace
 
-double estimate_fill(const Shape& shape, double dp, int dim, const Aabb& clip) {
-  const Aabb box = in_scene(clipped(shape.box(), clip), dim);
-  if (box.empty()) return 0.0;
-  if (!box.lo.allFinite() || !box.hi.allFinite()) return std::numeric_limits<double>::infinity();
+namespace {
+
+/// Volume (area in 2D) within `box`, on a coarse grid: share(d, reach) is how much of a cell whose centre
+/// lies at the distance d counts, where the cell reaches from d - reach to d + reach.
+double sampled_volume(const Aabb& box, int dim, const std::function<double(const Vec3&)>& distance,
+                      const std::function<double(double d, double reach)>& share) {
   const int n = dim == 3 ? 16 : 64;
   const Vec3 cell = (box.hi - box.lo) / n;
-  // A cell counts by how deep its centre lies, so that thin bodies between the centres are seen
-  // too.
   const double reach = 0.5 * (dim == 3 ? std::cbrt(cell.prod()) : std::sqrt(cell.x() * cell.z()));
   const Index rows = dim == 3 ? n * n : n;
   const double filled = ordered_sum(rows, [&](Index row) {
@@ -142,12 +142,46 @@ double estimate_fill(const Shape& shape, double dp, int dim, const Aabb& clip) {
       const Vec3 p = box.lo + cell.cwiseProduct(
                                   Vec3(i + 0.5, dim == 3 ? static_cast<double>(row % n) + 0.5 : 0.0,
                                        static_cast<double>(dim == 3 ? row / n : row) + 0.5));
-      const double d = distance_bound(shape, p);
-      sum += reach > 0.0 ? std::clamp(0.5 - 0.5 * d / reach, 0.0, 1.0) : (d < 0.0 ? 1.0 : 0.0);
+      sum += share(distance(p), reach);
     }
     return sum;
   });
-  return filled / static_cast<double>(rows * n) * volume(box, dim) / std::pow(dp, dim);
+  return filled / static_cast<double>(rows * n) * volume(box, dim);
+}
+
+/// Share of [d - reach, d + reach] that lies in [from, to].
+double overlap(double d, double reach, double from, double to) {
+  if (!(reach > 0.0)) return d >= from && d < to ? 1.0 : 0.0;
+  return std::max(0.0, std::min(d + reach, to) - std::max(d - reach, from)) / (2.0 * reach);
+}
+
+}  // namespace
+
+double estimate_fill(const Shape& shape, double dp, int dim, const Aabb& clip) {
+  const Aabb box = in_scene(clipped(shape.box(), clip), dim);
+  if (box.empty()) return 0.0;
+  if (!box.lo.allFinite() || !box.hi.allFinite()) return std::numeric_limits<double>::infinity();
+  // A cell counts by how deep its centre lies, so that thin bodies between the centres are seen
+  // too.
+  constexpr double deep = -std::numeric_limits<double>::max();
+  return sampled_volume(
+             box, dim, [&](const Vec3& p) { return distance_bound(shape, p); },
+             [](double d, double reach) { return overlap(d, reach, deep, 0.0); }) /
+         std::pow(dp, dim);
+}
+
+double estimate_layers(const Shape& shape, double dp, int dim, double thickness, LayerSide side,
+                       const Aabb& clip) {
+  const bool outside = side == LayerSide::outside;
+  const Aabb around = outside ? shape.box().grown(thickness) : shape.box();
+  const Aabb box = in_scene(clipped(around, clip), dim);
+  if (box.empty()) return 0.0;
+  if (!box.lo.allFinite() || !box.hi.allFinite()) return std::numeric_limits<double>::infinity();
+  const double sign = outside ? -1.0 : 1.0;
+  return sampled_volume(
+             box, dim, [&](const Vec3& p) { return sign * shape.signed_distance(p); },
+             [&](double d, double reach) { return overlap(d, reach, -thickness, 0.0); }) /
+         std::pow(dp, dim);
 }
 
 std::vector<Vec3> fill_lattice(const Shape& shape, double dp, int dim, const Aabb& clip,

@@ -32,4 +32,9 @@ enum class LayerSide { inside, outside };
 std::vector<Vec3> fill_layers(const Shape& shape, double dp, int dim, double thickness,
                               LayerSide side, const Aabb& clip = {});
 
+/// Expected number of points of fill_layers, estimated as in estimate_fill. Infinite when nothing
+/// bounds the shape.
+double estimate_layers(const Shape& shape, double dp, int dim, double thickness, LayerSide side,
+                       const Aabb& clip = {});
+
 }  // namespace sphgeo

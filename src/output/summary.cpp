@@ -3,6 +3,8 @@
 #include <sys/resource.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 
 #include "core/atomic_file.h"
 
@@ -86,6 +88,10 @@ Json to_json(const Summary& s) {
     row["relative_error"] = number(r.relative_error);
     out["ledger"][r.name] = std::move(row);
   }
+  if (s.forecast) {
+    out["forecast"] = to_json(*s.forecast);
+    out["forecast"]["actual"] = to_json(RunFigures{s.particles, s.memory_peak_bytes, s.disk_bytes, s.advection_steps, s.acoustic_steps, s.wall_s});
+  }
   out["guard"] = guard_json(s.guard);
   out["checkpoints"] = {
       {"count", s.checkpoint.count}, {"seconds", number(s.checkpoint.seconds)}, {"bytes", s.checkpoint.bytes}};
@@ -100,6 +106,10 @@ void write_summary(const std::string& path, const Summary& summary) {
 }
 
 std::uint64_t peak_memory_bytes() {
+  // Not ru_maxrss alone: that begins with what the process was before it became this program.
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmHWM:")) return std::strtoull(line.c_str() + 6, nullptr, 10) * 1024;
   struct rusage usage {};
   if (getrusage(RUSAGE_SELF, &usage) != 0) return 0;
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;

@@ -10,6 +10,7 @@
 
 #include "core/types.h"
 #include "output/expectation.h"
+#include "output/forecast.h"
 #include "output/time_table.h"
 
 namespace sphgeo {
@@ -56,6 +57,8 @@ struct Summary {
   double wall_s = 0;
   double particle_updates_per_s_per_core = 0;  ///< one update = one acoustic step of one particle
   std::uint64_t memory_peak_bytes = 0;
+  std::uint64_t disk_bytes = 0;                ///< of the run folder
+  std::optional<Forecast> forecast;            ///< made at the start
   std::vector<TimeRow> effects;  ///< from with_rest()
   std::vector<ExpectResult> expect;
   std::vector<LedgerRow> ledger;

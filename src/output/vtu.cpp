@@ -119,43 +119,51 @@ class VtuFile {
     close(element);
   }
 
-  void write(const std::string& path, Index points, Index cells) const {
-    std::string head =
-        "<?xml version=\"1.0\"?>\n<!-- written by sphgeo -->\n"
-        "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
-        "header_type=\"UInt64\"";
-    if (options_.compress) head += " compressor=\"vtkZLibDataCompressor\"";
-    head += ">\n  <UnstructuredGrid>\n";
-    if (options_.time)
-      head += fmt::format(
-          "    <FieldData>\n      <DataArray type=\"Float64\" Name=\"TimeValue\" "
-          "NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n    </FieldData>\n",
-          *options_.time);
-    head += fmt::format("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", points, cells);
-    const std::string middle =
-        "    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n_";
-    const std::string tail = "\n  </AppendedData>\n</VTKFile>\n";
+  std::uint64_t bytes(Index points, Index cells) const {
+    return head(points, cells).size() + offset_ + tail.size();
+  }
 
-    AtomicFile file(path, head.size() + xml_.size() + middle.size() + offset_ + tail.size());
-    file.write(head);
-    file.write(xml_);
-    file.write(middle);
+  void write(const std::string& path, Index points, Index cells) const {
+    const std::string start = head(points, cells);
+    AtomicFile file(path, start.size() + offset_ + tail.size());
+    file.write(start);
     for (const VtuArray& a : arrays_) a.write(file);
-    file.write(tail);
+    file.write(tail.data(), tail.size());
     file.commit();
   }
 
  private:
+  static constexpr std::string_view tail = "\n  </AppendedData>\n</VTKFile>\n";
+
+  /// All that stands before the first array.
+  std::string head(Index points, Index cells) const {
+    std::string text =
+        "<?xml version=\"1.0\"?>\n<!-- written by sphgeo -->\n"
+        "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" "
+        "header_type=\"UInt64\"";
+    if (options_.compress) text += " compressor=\"vtkZLibDataCompressor\"";
+    text += ">\n  <UnstructuredGrid>\n";
+    if (options_.time)
+      text += fmt::format(
+          "    <FieldData>\n      <DataArray type=\"Float64\" Name=\"TimeValue\" "
+          "NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>\n    </FieldData>\n",
+          *options_.time);
+    text += fmt::format("    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", points, cells);
+    text += xml_;
+    text += "    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n_";
+    return text;
+  }
+
   VtuOptions options_;
   std::string xml_;
   std::uint64_t offset_ = 0;
   std::vector<VtuArray> arrays_;
 };
 
-void write_grid(const std::string& path, const VtuPoints& points, int corners_per_cell, Index cells,
-                const std::function<Index(Index)>& corner,
-                const std::vector<VtuField>& point_fields, const std::vector<VtuField>& cell_fields,
-                const VtuOptions& options) {
+VtuFile grid_file(const VtuPoints& points, int corners_per_cell, Index cells,
+                  const std::function<Index(Index)>& corner,
+                  const std::vector<VtuField>& point_fields,
+                  const std::vector<VtuField>& cell_fields, const VtuOptions& options) {
   VtuFile file(options);
   file.add_fields("PointData", point_fields, points.count());
   file.add_fields("CellData", cell_fields, cells);
@@ -180,29 +188,54 @@ void write_grid(const std::string& path, const VtuPoints& points, int corners_pe
                                           std::fill(out, out + n, static_cast<std::uint8_t>(type));
                                         }));
   file.close("Cells");
-  file.write(path, points.count(), cells);
+  return file;
+}
+
+VtuFile particles_file(const VtuPoints& points, const std::vector<VtuField>& fields,
+                       const VtuOptions& options) {
+  return grid_file(
+      points, 1, points.count(), [](Index i) { return i; }, fields, {}, options);
+}
+
+VtuFile mesh_file(const VtuPoints& points, int corners_per_cell, std::span<const Index> corners,
+                  const std::vector<VtuField>& point_fields,
+                  const std::vector<VtuField>& cell_fields, const VtuOptions& options) {
+  const auto count = static_cast<Index>(corners.size());
+  if ((corners_per_cell != 2 && corners_per_cell != 3) || count % corners_per_cell != 0)
+    throw std::invalid_argument("a mesh needs 2 or 3 corners a cell");
+  for (const Index c : corners)
+    if (c < 0 || c >= points.count()) throw std::invalid_argument("a mesh corner is no point");
+  return grid_file(
+      points, corners_per_cell, count / corners_per_cell,
+      [corners](Index i) { return corners[static_cast<std::size_t>(i)]; }, point_fields,
+      cell_fields, options);
 }
 
 }  // namespace
 
 void write_vtu(const std::string& path, const VtuPoints& points,
                const std::vector<VtuField>& fields, const VtuOptions& options) {
-  write_grid(
-      path, points, 1, points.count(), [](Index i) { return i; }, fields, {}, options);
+  particles_file(points, fields, options).write(path, points.count(), points.count());
+}
+
+std::uint64_t vtu_bytes(const VtuPoints& points, const std::vector<VtuField>& fields,
+                        const VtuOptions& options) {
+  return particles_file(points, fields, options).bytes(points.count(), points.count());
 }
 
 void write_vtu_mesh(const std::string& path, const VtuPoints& points, int corners_per_cell,
                     std::span<const Index> corners, const std::vector<VtuField>& point_fields,
                     const std::vector<VtuField>& cell_fields, const VtuOptions& options) {
-  const auto count = static_cast<Index>(corners.size());
-  if ((corners_per_cell != 2 && corners_per_cell != 3) || count % corners_per_cell != 0)
-    throw std::invalid_argument("a mesh needs 2 or 3 corners a cell");
-  for (const Index c : corners)
-    if (c < 0 || c >= points.count()) throw std::invalid_argument("a mesh corner is no point");
-  write_grid(
-      path, points, corners_per_cell, count / corners_per_cell,
-      [corners](Index i) { return corners[static_cast<std::size_t>(i)]; }, point_fields,
-      cell_fields, options);
+  mesh_file(points, corners_per_cell, corners, point_fields, cell_fields, options)
+      .write(path, points.count(), static_cast<Index>(corners.size()) / corners_per_cell);
+}
+
+std::uint64_t vtu_mesh_bytes(const VtuPoints& points, int corners_per_cell,
+                             std::span<const Index> corners,
+                             const std::vector<VtuField>& point_fields,
+                             const std::vector<VtuField>& cell_fields, const VtuOptions& options) {
+  return mesh_file(points, corners_per_cell, corners, point_fields, cell_fields, options)
+      .bytes(points.count(), static_cast<Index>(corners.size()) / corners_per_cell);
 }
 
 std::string xml_escaped(const std::string& text) {

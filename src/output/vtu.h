@@ -57,11 +57,22 @@ struct VtuOptions {
 void write_vtu(const std::string& path, const VtuPoints& points,
                const std::vector<VtuField>& fields, const VtuOptions& options = {});
 
+/// Bytes of the file that write_vtu would write. Real numbers of fields are not looked at, only counted.
+std::uint64_t vtu_bytes(const VtuPoints& points, const std::vector<VtuField>& fields,
+                        const VtuOptions& options = {});
+
 /// Writes a surface: `corners` holds the point numbers of each cell, 2 (lines) or 3 (triangles) a
 /// cell. Throws as write_vtu does, std::invalid_argument also for a corner that is no point.
 void write_vtu_mesh(const std::string& path, const VtuPoints& points, int corners_per_cell,
                     std::span<const Index> corners, const std::vector<VtuField>& point_fields,
                     const std::vector<VtuField>& cell_fields, const VtuOptions& options = {});
+
+/// Bytes of the file that write_vtu_mesh would write.
+std::uint64_t vtu_mesh_bytes(const VtuPoints& points, int corners_per_cell,
+                             std::span<const Index> corners,
+                             const std::vector<VtuField>& point_fields,
+                             const std::vector<VtuField>& cell_fields,
+                             const VtuOptions& options = {});
 
 /// Text in which & < > " are written as XML wants them.
 std::string xml_escaped(const std::string& text);

@@ -1,0 +1,35 @@
+#pragma once
+// What a run will write, and what writing it takes.
+
+#include <string>
+#include <vector>
+
+#include "plan/plan.h"
+
+namespace sphgeo {
+
+/// How often a run looks at its particles, and what it writes then.
+struct RunOutput {
+  double frames = 0;         ///< number of
+  double observations = 0;   ///< number of times that any probe, row or frame is due
+  double samples_bytes = 0;  ///< of all rows of the probes and of run.csv, in the files
+  double series_bytes = 0;   ///< the same in memory
+  double frame_bytes = 0;    ///< of one frame of all sets but walls
+  double frame_heads = 0;    ///< of that, what does not depend on the number of particles
+  double walls_bytes = 0;    ///< of all frames of the boundaries
+  double buffer_bytes = 0;   ///< memory taken while a frame is written
+  double checkpoint_bytes = 0;  ///< of one checkpoint; while it is written it exists in memory too
+};
+
+/// Of a run of `steps` advection steps. Composes one frame to know its size.
+template <int Dim>
+RunOutput run_output(const World<Dim>& world, const std::vector<Wish>& wishes, double steps);
+
+/// Bytes of a frame of the boundaries; 0 without any.
+double boundaries_bytes(const Model& model);
+
+/// Samples all probes once for nothing but the time it takes.
+template <int Dim>
+void sample_probes(const World<Dim>& world);
+
+}  // namespace sphgeo

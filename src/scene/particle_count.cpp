@@ -1,0 +1,50 @@
+#include "scene/particle_count.h"
+
+#include "boundaries/boundary.h"
+#include "geometry/fill.h"
+#include "scene/build.h"
+
+namespace sphgeo {
+namespace {
+
+void add(ParticleCounts& counts, const std::string& set, double n) {
+  for (auto& [name, sum] : counts)
+    if (name == set) {
+      sum += n;
+      return;
+    }
+  counts.emplace_back(set, n);
+}
+
+}  // namespace
+
+ParticleCounts expected_particles(const Model& model) {
+  ParticleCounts counts;
+  for (const Body& b : model.bodies)
+    if (const MaterialSpec* m = model.material(b.material); m && b.shape)
+      add(counts, m->phase(), estimate_fill(*b.shape, model.resolution, model.dimension, {}));
+  const Placement placement{model.resolution, support_radius(model), model.dimension};
+  for (const auto& b : model.boundaries)
+    if (const auto* wall = dynamic_cast<const WallBoundary*>(b.get())) add(counts, "walls", wall->expected_points(placement));
+  return counts;
+}
+
+double count_of(const ParticleCounts& counts, const std::string& set) {
+  for (const auto& [name, n] : counts)
+    if (name == set) return n;
+  return 0;
+}
+
+double total_of(const ParticleCounts& counts) {
+  double sum = 0;
+  for (const auto& [name, n] : counts) sum += n;
+  return sum;
+}
+
+Model at_resolution(const Model& model, double spacing) {
+  Model other = model;
+  other.resolution = spacing;
+  return other;
+}
+
+}  // namespace sphgeo

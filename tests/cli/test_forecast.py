@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""What a run will cost: `check` says it, `run` writes it beside what it did cost, and a scene that the machine
+has no memory for is refused before anything is placed.
+
+    test_forecast.py SPHGEO
+"""
+import json
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+SPHGEO = None
+ROOT = Path(__file__).resolve().parents[2]
+QUICK = str(ROOT / "decks" / "quickstart.yaml")
+
+
+def call(*words, memory=None):
+    limit = (lambda: resource.setrlimit(resource.RLIMIT_AS, (memory, memory))) if memory else None
+    return subprocess.run([SPHGEO, *words], capture_output=True, text=True, timeout=100, preexec_fn=limit)
+
+
+def check(*words):
+    done = call("check", QUICK, "--json", *words)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)["forecast"]
+
+
+class Forecast(unittest.TestCase):
+    def test_check(self):
+        priced, counted = check(), check("--no-calibrate")
+        self.assertGreater(priced["wall_s"], 0)
+        self.assertIsNone(counted["wall_s"])
+        for key in ("particles", "advection_steps", "acoustic_steps", "threads"):
+            self.assertEqual(priced[key], counted[key])
+        self.assertEqual(check("--no-calibrate", "--threads", "2")["threads"], 2)
+        ladder = priced["ladder"]
+        self.assertEqual([round(r["resolution"], 4) for r in ladder], [0.02, 0.0141, 0.0071, 0.005])
+        for key in ("memory_bytes", "disk_bytes", "acoustic_steps", "wall_s"):
+            values = [r[key] for r in ladder]
+            values.insert(2, priced[key])
+            self.assertEqual(values, sorted(values), key)
+        text = call("check", QUICK, "--no-calibrate").stdout
+        self.assertIn("time unknown", text)
+        self.assertIn("<- this deck", text)
+
+    def test_ladder(self):
+        """The rungs are what the deck itself says at those spacings."""
+        for rung in check("--no-calibrate")["ladder"]:
+            there = check("--no-calibrate", "--set", f"resolution={rung['resolution']!r}")
+            particles = [sum(f["particles"].values()) for f in (rung, there)]
+            self.assertLess(abs(particles[0] / particles[1] - 1), 0.03, rung["resolution"])
+            for key, most in (("acoustic_steps", 0.03), ("memory_bytes", 0.15), ("disk_bytes", 0.2)):
+                self.assertLess(abs(rung[key] / there[key] - 1), most, f"{key} at {rung['resolution']}")
+
+    def test_run(self):
+        """All but the time, which depends on what else the machine does."""
+        with tempfile.TemporaryDirectory() as folder:
+            out = Path(folder) / "run"
+            done = call("run", QUICK, "-q", "-o", str(out), "--set", "end_time=0.3", "--threads", "1")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            forecast = json.loads((out / "summary.json").read_text())["forecast"]
+            actual = forecast["actual"]
+            self.assertEqual(forecast["particles"], actual["particles"])
+            for key, most in (("memory_bytes", 0.15), ("advection_steps", 0.15), ("acoustic_steps", 0.15), ("disk_bytes", 0.25)):
+                self.assertLess(abs(forecast[key] / actual[key] - 1), most, key)
+            self.assertGreater(forecast["wall_s"], 0)
+            self.assertGreater(actual["wall_s"], 0)
+            there = check("--no-calibrate", "--set", "end_time=0.3", "--threads", "1")
+            for key in ("particles", "advection_steps", "acoustic_steps"):
+                self.assertEqual(forecast[key], there[key])
+
+    def test_too_large(self):
+        for command in (["check", QUICK], ["run", QUICK, "-o", "/nonexistent/run"]):
+            for change in (["resolution=1e-6"], ["resolution=1e-6", "dimension=3"]):
+                start = time.monotonic()
+                done = call(*command, *(w for c in change for w in ("--set", c)))
+                self.assertLess(time.monotonic() - start, 10)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertEqual(done.stdout, "")
+                for text in ("E113", "resolution", "particles", "are available", "would fit"):
+                    self.assertIn(text, done.stderr)
+
+    def test_the_resolution_that_fits(self):
+        """Under a limit of the address space, the offered resolution is taken, and takes most of what there is."""
+        limit = 1_000_000_000
+        words = ("check", QUICK, "--no-calibrate", "--threads", "1", "--set", "dimension=3", "--set")
+        done = call(*words, "resolution=0.002", memory=limit)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        offered = done.stderr.split("a resolution of ")[1].split(" m ")[0]
+        done = call(*words, f"resolution={offered}", "--json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        needed = json.loads(done.stdout)["forecast"]["memory_bytes"]
+        self.assertLess(needed, limit)
+        self.assertGreater(needed, 0.6 * limit)
+
+
+if __name__ == "__main__":
+    SPHGEO = str(Path(sys.argv.pop(1)).resolve())
+    unittest.main(verbosity=0)
