@@ -153,7 +153,11 @@ int main(int argc, char** argv) {
   CLI::App app{
       "soil, water, rock and structures with smoothed particle hydrodynamics, from a YAML deck",
       "sphgeo"};
-  app.set_version_flag("--version", std::string("sphgeo ") + version());
+  app.set_version_flag("--version", [] {
+    std::string text = version_text();
+    text.pop_back();  // the line ends by itself
+    return text;
+  }, "print version, commit, compiler, vector width and libraries");
   app.require_subcommand(1);
   const auto whole = above_zero<int>("a whole number");
   int code = 0;
@@ -200,15 +204,19 @@ int main(int argc, char** argv) {
   check_app->callback([&] { code = run_guarded([&] { return check_command(check); }); });
 
   CLI::App* list_app =
-      app.add_subcommand("list", "print the types of materials, shapes, boundaries, probes");
+      app.add_subcommand("list", "print all types, deck sections, effects and fields");
   list_app->callback([&] { code = run_guarded(list_command); });
 
   std::string type;
-  CLI::App* show_app = app.add_subcommand("show", "print the keys of a type");
+  CLI::App* show_app = app.add_subcommand("show", "print the keys of a type or section, or what an effect or field is");
   show_app->add_option("type", type, "a name that 'sphgeo list' prints")
       ->required()
       ->type_name("TYPE");
   show_app->callback([&] { code = run_guarded([&] { return show_command(type); }); });
+
+  CLI::App* reference_app =
+      app.add_subcommand("reference", "print the reference of all keys and types as Markdown");
+  reference_app->callback([&] { code = run_guarded(reference_command); });
 
   CLI::App* schema_app = app.add_subcommand("schema", "print the JSON Schema of decks");
   schema_app->callback([&] { code = run_guarded(schema_command); });

@@ -43,15 +43,19 @@ int bench_command(const BenchOptions& options);
 
 int schema_command();
 
-/// Prints the types of the registries and the effects.
+/// Prints the names of deck sections, types, effects and fields.
 int list_command();
-/// Prints the keys of every type of this name. Throws Error (usage) when there is none.
+/// Prints all about whatever has this name. Throws Error (usage) when nothing has.
 int show_command(const std::string& type);
+/// Prints all about all of them as Markdown.
+int reference_command();
 
 /// Threads for a scene: as many as the machine has, but no more than one per 2000 particles.
 int sensible_threads(long particles, int asked);
 
 /// The version of this build.
 const char* version();
+/// The same with commit, compiler, width of vectors, threads and libraries, as lines.
+std::string version_text();
 
 }  // namespace sphgeo

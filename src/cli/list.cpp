@@ -1,106 +1,108 @@
-// `sphgeo list` and `sphgeo show`: what the registries hold, from the declarations themselves.
+// `sphgeo list`, `sphgeo show` and `sphgeo reference`: the catalog as text and as a page.
 
 #include <fmt/format.h>
 
-#include <array>
-#include <iostream>
-
+#include "cli/catalog.h"
 #include "cli/commands.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "deck/model.h"
-#include "effects/effect.h"
 
 namespace sphgeo {
 namespace {
 
-std::array<const RegistryCore*, 4> registries() {
-  return {&Registry<MaterialSpec>::get(), &Registry<Shape>::get(), &Registry<BoundarySpec>::get(),
-          &Registry<ProbeSpec>::get()};
+std::string lead(const KeyFacts& k) {
+  return k.required ? "required" : k.otherwise.empty() ? "optional" : "default " + k.otherwise;
 }
 
-/// A value on one line, as a deck may hold it.
-std::string flow_text(const Node& node) {
+void print_entry(const CatalogGroup& group, const CatalogEntry& entry) {
+  fmt::print("{} ({}): {}\n", entry.name, group.kind, entry.sentence);
+  for (const KeyFacts& k : entry.keys)
+    fmt::print("  {}\n      {}{}\n      {}; {}{}\n", k.name, k.sentence, k.equation.empty() ? "" : " (" + k.equation + ")", k.accepts, lead(k),
+               k.changeable ? "; may change on resume" : "");
+  for (const auto& [what, value] : entry.facts) fmt::print("  {:<10} {}\n", what, value);
+}
+
+/// Text in a cell of a Markdown table.
+std::string cell(const std::string& text) {
   std::string out;
-  switch (node.kind) {
-    case Node::Kind::null:
-      return "none";
-    case Node::Kind::scalar:
-      return node.text.empty() ? "''" : node.text;
-    case Node::Kind::list:
-      for (const Node& item : node.items) out += (out.empty() ? "" : ", ") + flow_text(item);
-      return "[" + out + "]";
-    case Node::Kind::map:
-      for (const Entry& e : node.entries)
-        out += (out.empty() ? "" : ", ") + e.key + ": " + flow_text(e.value);
-      return "{" + out + "}";
-  }
+  for (const char c : text) out += c == '|' ? "\\|" : std::string(1, c);
   return out;
 }
 
-/// The key, its sentence, and what else the declaration says: kind, range, default.
-void print_key(const Key& key, const Node& defaults) {
-  std::string facts = key.type().words(key);
-  if (key.range().bounded()) facts += ", " + key.range().words(key.unit());
-  if (const Entry* given = key.required() ? nullptr : defaults.find(key.name())) {
-    const std::string value = flow_text(given->value);
-    const bool with_unit = given->value.kind == Node::Kind::scalar && value != "auto" &&
-                           !key.unit().same_dimension(unit::none);
-    facts +=
-        fmt::format("; default {}{}", value, with_unit ? std::string(" ") + key.unit().symbol : "");
-  } else if (key.required()) {
-    facts += "; required";
-  }
-  fmt::print("  {}\n      {}{}\n      {}\n", key.name(), key.sentence(),
-             key.equation().empty() ? "" : " (" + key.equation() + ")", facts);
+void print_keys(const CatalogEntry& entry) {
+  fmt::print("| key | accepts | default | what it means |\n|---|---|---|---|\n");
+  for (const KeyFacts& k : entry.keys)
+    fmt::print("| `{}` | {} | {} | {}{} |\n", k.name, cell(k.accepts),
+               k.required ? "required" : k.otherwise.empty() ? "" : "`" + cell(k.otherwise) + "`", cell(k.sentence),
+               k.equation.empty() ? "" : " (" + k.equation + ")");
+  fmt::print("\n");
 }
 
-void print_type(const RegistryCore& registry, const RegistryEntry& entry) {
-  const SchemaCore& own = entry.schema();
-  const std::shared_ptr<void> object = entry.create();
-  fmt::print("{} ({}): {}\n", entry.name, registry.interface_name(), own.sentence());
-  std::vector<SchemaPart> parts;
-  if (registry.common() != nullptr) parts.push_back({registry.common(), object.get()});
-  parts.push_back({&own, entry.object(object.get())});
-  Node defaults = Node::map();
-  write_mapping(defaults, parts, {});
-  for (const SchemaPart& part : parts)
-    for (const Key& key : part.schema->keys()) print_key(key, defaults);
+/// A group whose entries have no keys: one table of all.
+void print_facts(const CatalogGroup& group) {
+  std::string head = "| name |", rule = "|---|";
+  for (const auto& [what, value] : group.entries.front().facts) {
+    head += " " + what + " |";
+    rule += "---|";
+  }
+  fmt::print("{} what it is |\n{}---|\n", head, rule);
+  for (const CatalogEntry& e : group.entries) {
+    fmt::print("| `{}` |", e.name);
+    for (const auto& [what, value] : e.facts) fmt::print(" {} |", cell(value));
+    fmt::print(" {} |\n", cell(e.sentence));
+  }
+  fmt::print("\n");
 }
 
 }  // namespace
 
 int list_command() {
   const char* between = "";
-  for (const RegistryCore* registry : registries()) {
-    fmt::print("{}{} types:\n", between, registry->interface_name());
-    for (const RegistryEntry& entry : registry->entries())
-      fmt::print("  {:<22} {}\n", entry.name, entry.schema().sentence());
+  for (const CatalogGroup& group : catalog()) {
+    fmt::print("{}{}:\n", between, group.heading);
+    for (const CatalogEntry& entry : group.entries) fmt::print("  {:<24} {}\n", entry.name, entry.sentence);
     between = "\n";
   }
-  fmt::print("\neffects, selected by the scene:\n");
-  for (const EffectRegistry::Entry& effect : EffectRegistry::all())
-    fmt::print("  {:<22} {}\n", effect.info.name, effect.info.sentence);
   return 0;
 }
 
-int show_command(const std::string& type) {
+int show_command(const std::string& name) {
   std::vector<std::string> names;
   const char* between = "";
-  for (const RegistryCore* registry : registries()) {
-    for (const std::string& name : registry->names()) names.push_back(name);
-    if (const RegistryEntry* entry = registry->find(type)) {
+  for (const CatalogGroup& group : catalog())
+    for (const CatalogEntry& entry : group.entries) {
+      names.push_back(entry.name);
+      if (entry.name != name) continue;
       fmt::print("{}", between);
-      print_type(*registry, *entry);
+      print_entry(group, entry);
       between = "\n";
     }
-  }
   if (*between != '\0') return 0;
-  const std::string near = nearest_name(type, names);
-  throw Error(ExitCode::usage,
-              near.empty()
-                  ? fmt::format("there is no type '{}'; 'sphgeo list' prints them all", type)
-                  : fmt::format("there is no type '{}'; did you mean '{}'?", type, near));
+  const std::string near = nearest_name(name, names);
+  throw Error(ExitCode::usage, near.empty() ? fmt::format("there is no type '{}'; 'sphgeo list' prints them all", name)
+                                            : fmt::format("there is no type '{}'; did you mean '{}'?", name, near));
+}
+
+int reference_command() {
+  fmt::print(
+      "# Reference\n\n"
+      "All keys of a deck, all types, effects and fields. Printed by `sphgeo reference` from the declarations that the\n"
+      "reader of decks uses; `sphgeo show NAME` prints one of them.\n\n"
+      "Numbers are in SI units; a number with a unit, such as `18 kPa` or `30 deg`, is accepted where the dimension\n"
+      "fits, and so are formulas of the deck's `variables`. `auto` stands for what the key's sentence says.\n");
+  for (const CatalogGroup& group : catalog()) {
+    fmt::print("\n## {}{}\n\n{}\n\n", static_cast<char>(group.heading[0] - 'a' + 'A'), group.heading.substr(1), group.sentence);
+    if (group.entries.empty()) continue;
+    if (group.entries.front().keys.empty()) {
+      print_facts(group);
+      continue;
+    }
+    for (const CatalogEntry& entry : group.entries) {
+      fmt::print("### {}\n\n{}\n\n", entry.name, entry.sentence);
+      print_keys(entry);
+    }
+  }
+  return 0;
 }
 
 }  // namespace sphgeo

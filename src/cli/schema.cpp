@@ -6,8 +6,6 @@
 
 namespace sphgeo {
 
-const char* version() { return SPHGEO_VERSION; }
-
 int schema_command() {
   std::cout << json_schema().dump(2) << "\n";
   return 0;

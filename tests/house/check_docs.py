@@ -64,15 +64,17 @@ def check_calls(name, text, known):
 def check_pages(known):
     """Each option of a page is one of its command, and each option of a command is in its page."""
     overview = plain((ROOT / "man" / "sphgeo.1").read_text())
-    described = set(re.findall(r"(?m)^(\w+)(?: .*)?$", overview.split("COMMANDS")[1].split("OUTPUT")[0]))
+    described = set(re.findall(r"(?m)^(\w+)(?: .*)?$", overview.split("COMMANDS")[1].split("OPTIONS")[0]))
     for command, options in known.items():
         page = ROOT / "man" / (f"sphgeo-{command}.1" if command else "sphgeo.1")
         if command and command not in described:
             yield f"man/sphgeo.1: the command '{command}' is not described"
-        text = plain(page.read_text()) if page.is_file() else overview
+        if not page.is_file():
+            yield f"{page.relative_to(ROOT)}: there is no such page"
+            continue
+        text = plain(page.read_text())
         for option in sorted(options - COMMON):
-            # A short form and its long form stand for each other.
-            if option.startswith("--") and option not in options_in(text):
+            if option not in options_in(text):
                 yield f"{page.relative_to(ROOT)}: the option '{option}' is not described"
     for page in sorted((ROOT / "man").glob("sphgeo-*.1")):
         command = page.stem.split("-", 1)[1]

@@ -1,0 +1,49 @@
+# Completion of sphgeo for bash: commands, options, decks, and the names that `sphgeo show` knows.
+# Installed where bash-completion looks; or: source share/completion/sphgeo.bash
+
+_sphgeo() {
+  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} command=${COMP_WORDS[1]}
+  local commands="run check list show reference schema bench"
+  local options=""
+  COMPREPLY=()
+
+  if ((COMP_CWORD == 1)); then
+    mapfile -t COMPREPLY < <(compgen -W "$commands --help --version -h" -- "$word")
+    return
+  fi
+  case $command in
+    run) options="--help -h --set --output -o --threads --overwrite --verify --quiet -q" ;;
+    check) options="--help -h --set --explain --json --no-calibrate --threads" ;;
+    bench) options="--help -h --json --scene --size --precision --seconds --repeats" ;;
+    list | show | reference | schema) options="--help -h" ;;
+    *) return ;;
+  esac
+
+  case $before in
+    -o | --output)
+      mapfile -t COMPREPLY < <(compgen -d -- "$word")
+      return ;;
+    --precision)
+      mapfile -t COMPREPLY < <(compgen -W "single double both" -- "$word")
+      return ;;
+    --scene)
+      mapfile -t COMPREPLY < <(compgen -W "water_block_h1.3 water_block_h1.8 dam_break" -- "$word")
+      return ;;
+    --set | --threads | --size | --seconds | --repeats)
+      return ;;
+  esac
+
+  if [[ $word == -* ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
+  elif [[ $command == show ]]; then
+    mapfile -t COMPREPLY < <(compgen -W "$("${COMP_WORDS[0]}" list 2>/dev/null | sed -n 's/^  \([^ ]*\) .*/\1/p')" -- "$word")
+  elif [[ $command == run || $command == check ]]; then
+    # Decks, and folders on the way to them.
+    mapfile -t COMPREPLY < <(compgen -f -X '!*.yaml' -- "$word"; compgen -d -S / -- "$word")
+    compopt -o nospace 2>/dev/null
+    [[ ${#COMPREPLY[@]} == 1 && ${COMPREPLY[0]} == *.yaml ]] && compopt +o nospace 2>/dev/null
+  fi
+  return 0
+}
+
+complete -o filenames -F _sphgeo sphgeo

@@ -1,0 +1,54 @@
+// What this build is: its version, and for `--version` everything that a report of a fault needs.
+
+#include <CLI/Version.hpp>
+#include <H5public.h>
+#include <fmt/format.h>
+#include <muParser.h>
+#include <omp.h>
+#include <zlib.h>
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/commands.h"
+#include "core/parallel.h"
+#include "sph/lanes.h"
+
+namespace sphgeo {
+namespace {
+
+std::string compiler() {
+#if defined(__clang__)
+  return "Clang " __clang_version__;
+#else
+  return "GCC " __VERSION__;
+#endif
+}
+
+std::string hdf5() {
+  unsigned major = 0, minor = 0, release = 0;
+  H5get_libversion(&major, &minor, &release);
+  return fmt::format("{}.{}.{}", major, minor, release);
+}
+
+}  // namespace
+
+const char* version() { return SPHGEO_VERSION; }
+
+std::string version_text() {
+  // Versions of libraries are those that run where they can be asked, else those that it was built with.
+  return fmt::format(
+      "sphgeo {}\n"
+      "commit     {}\n"
+      "compiler   {}, {}, for {}\n"
+      "vectors    {} bits: {} numbers in single, {} in double precision\n"
+      "threads    OpenMP {}, up to {}\n"
+      "libraries  yaml-cpp {}, muparser {}, nlohmann-json {}.{}.{}, HDF5 {}, zlib {}, fmt {}.{}.{}, CLI11 {}, Eigen {}.{}.{}\n",
+      SPHGEO_VERSION, SPHGEO_COMMIT, compiler(), SPHGEO_BUILD_TYPE, SPHGEO_ARCH, 8 * lane_bytes, native_width<float>,
+      native_width<double>, _OPENMP, threads(), SPHGEO_YAML_CPP, mu::Parser().GetVersion(mu::pviBRIEF), NLOHMANN_JSON_VERSION_MAJOR,
+      NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH, hdf5(), zlibVersion(), FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
+      FMT_VERSION % 100, CLI11_VERSION, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
+}
+
+}  // namespace sphgeo
