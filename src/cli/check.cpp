@@ -41,25 +41,25 @@ nlohmann::ordered_json plan_json(const auto& world, const auto& plan) {
 }
 
 void print_plan(const nlohmann::ordered_json& j) {
-  fmt::print("\nplan: what runs, and why\n");
+  std::cout << fmt::format("\nplan: what runs, and why\n");
   for (const auto& e : j["plan"])
-    fmt::print("  {:<13} {:<24} {:<22} {:<18} {}\n", e["stage"].get<std::string>(), e["name"].get<std::string>(),
+    std::cout << fmt::format("  {:<13} {:<24} {:<22} {:<18} {}\n", e["stage"].get<std::string>(), e["name"].get<std::string>(),
                e["equations"].get<std::string>(), e["acts_on"].get<std::string>(), e["because"].get<std::string>());
-  fmt::print("not used\n");
+  std::cout << fmt::format("not used\n");
   for (const auto& u : j["unused"])
-    fmt::print("  {:<38} {}\n", u["name"].get<std::string>(), u["because"].get<std::string>());
-  fmt::print("neighbor lists\n");
+    std::cout << fmt::format("  {:<38} {}\n", u["name"].get<std::string>(), u["because"].get<std::string>());
+  std::cout << fmt::format("neighbor lists\n");
   for (const auto& l : j["lists"])
-    fmt::print("  {} -> {}: {} pairs, {}\n", l["target"].get<std::string>(), l["source"].get<std::string>(),
+    std::cout << fmt::format("  {} -> {}: {} pairs, {}\n", l["target"].get<std::string>(), l["source"].get<std::string>(),
                l["pairs"].get<long>(), bytes_text(l["bytes"].get<double>()));
-  fmt::print("fields\n");
+  std::cout << fmt::format("fields\n");
   std::string set;
   for (const auto& f : j["fields"]) {
-    if (f["set"] != set) fmt::print("{}  {}:", set.empty() ? "" : "\n", f["set"].get<std::string>());
+    if (f["set"] != set) std::cout << fmt::format("{}  {}:", set.empty() ? "" : "\n", f["set"].get<std::string>());
     set = f["set"];
-    fmt::print(" {}({})", f["name"].get<std::string>(), f["lifetime"].get<std::string>());
+    std::cout << fmt::format(" {}({})", f["name"].get<std::string>(), f["lifetime"].get<std::string>());
   }
-  fmt::print("\nmemory {}\n", bytes_text(j["memory_bytes"].get<double>()));
+  std::cout << fmt::format("\nmemory {}\n", bytes_text(j["memory_bytes"].get<double>()));
 }
 
 /// What a run would cost; with the time unless `--no-calibrate`. Moves the world on.
@@ -111,15 +111,15 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
     std::cout << j.dump(2) << "\n";
     return 0;
   }
-  fmt::print("{}: {} dimensions, spacing {} m, {} s\n", model.title.empty() ? options.deck : model.title, Dim, model.resolution, model.end_time);
-  for (const auto& set : world.sets()) fmt::print("  {:<10} {:>10} particles\n", set->name(), set->size());
-  for (const auto& [name, n] : scene.body_particles) fmt::print("    body '{}': {}\n", name, n);
-  for (const auto& [name, n] : scene.boundary_particles) fmt::print("    boundary '{}': {}\n", name, n);
+  std::cout << fmt::format("{}: {} dimensions, spacing {} m, {} s\n", model.title.empty() ? options.deck : model.title, Dim, model.resolution, model.end_time);
+  for (const auto& set : world.sets()) std::cout << fmt::format("  {:<10} {:>10} particles\n", set->name(), set->size());
+  for (const auto& [name, n] : scene.body_particles) std::cout << fmt::format("    body '{}': {}\n", name, n);
+  for (const auto& [name, n] : scene.boundary_particles) std::cout << fmt::format("    boundary '{}': {}\n", name, n);
   if (world.find("water"))
-    fmt::print("  speed of sound {:.4g} m/s: {}\n", scene.sound.value, scene.sound.because);
+    std::cout << fmt::format("  speed of sound {:.4g} m/s: {}\n", scene.sound.value, scene.sound.because);
   if (options.explain) print_plan(j);
-  if (forecast) fmt::print("{}", render_forecast(*forecast, model.resolution));
-  fmt::print("the deck is sound\n");
+  if (forecast) std::cout << fmt::format("{}", render_forecast(*forecast, model.resolution));
+  std::cout << fmt::format("the deck is sound\n");
   return 0;
 }
 

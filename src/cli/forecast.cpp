@@ -30,8 +30,8 @@ constexpr double calibrated_particles = 400'000;
 constexpr double generous_bytes = 10'000;
 // Files of a run beside frames and rows: the resolved deck, the summary, the heads of the tables.
 constexpr double fixed_files = 16'000;
-// What HDF5 needs for itself to build a checkpoint.
-constexpr double checkpoint_library = 1.5e6;
+// What HDF5 takes for itself when it builds a checkpoint: its code and caches, as measured.
+constexpr double checkpoint_library = 5.5e6;
 // An entry of a collection of frames.
 constexpr double entry_bytes = 90;
 
@@ -112,7 +112,9 @@ class MemoryRule {
   };
   static Look look(const Model& model, double wanted) {
     CoarseCopy<Dim> copy(model, wanted);
-    return {copy.model.resolution, merged(memory_shares(*copy.scene.world, *copy.plan)), counts_of(*copy.scene.world)};
+    std::vector<MemoryShare> shares = memory_shares(*copy.scene.world, *copy.plan);
+    for (const auto& set : copy.scene.world->sets()) shares.push_back({"checkpoint", set->name(), saved_bytes(*set)});
+    return {copy.model.resolution, merged(shares), counts_of(*copy.scene.world)};
   }
   /// Shares of the same name and set as one.
   static std::vector<MemoryShare> merged(const std::vector<MemoryShare>& shares) {
@@ -147,8 +149,15 @@ void refuse(const Model& model, double available) {
     return need(m) <= available && largest_of(expected_particles(m)) <= largest_set;
   };
   if (fits(model)) return;
-  double spacing = model.resolution;
-  while (!fits(at_resolution(model, spacing))) spacing *= 1.03;
+  double least = model.resolution, spacing = least;
+  while (!fits(at_resolution(model, spacing))) {
+    least = spacing;
+    spacing *= 2;
+  }
+  for (int k = 0; k < 8; ++k) {
+    const double middle = std::sqrt(least * spacing);
+    (fits(at_resolution(model, middle)) ? spacing : least) = middle;
+  }
   // Two digits are enough, rounded to the coarser side.
   const double digit = std::pow(10.0, std::floor(std::log10(spacing)) - 1);
   spacing = std::ceil(spacing / digit) * digit;
@@ -167,7 +176,7 @@ void refuse(const Model& model, double available) {
 
 void refuse_too_large(const Model& model) {
   const ParticleCounts counts = expected_particles(model);
-  const auto available = static_cast<double>(available_memory());
+  const auto available = static_cast<double>(available_memory()) + static_cast<double>(resident_memory());
   // What no box bounds is found by the filling, which names the shape.
   if (!std::isfinite(total_of(counts)) && !std::isfinite(total_of(expected_particles(at_resolution(model, 1e3 * model.resolution))))) return;
   if (total_of(counts) * generous_bytes <= available && largest_of(counts) <= largest_set) return;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <iostream>
+
 #include "cli/catalog.h"
 #include "cli/commands.h"
 #include "core/error.h"
@@ -15,11 +17,11 @@ std::string lead(const KeyFacts& k) {
 }
 
 void print_entry(const CatalogGroup& group, const CatalogEntry& entry) {
-  fmt::print("{} ({}): {}\n", entry.name, group.kind, entry.sentence);
+  std::cout << fmt::format("{} ({}): {}\n", entry.name, group.kind, entry.sentence);
   for (const KeyFacts& k : entry.keys)
-    fmt::print("  {}\n      {}{}\n      {}; {}{}\n", k.name, k.sentence, k.equation.empty() ? "" : " (" + k.equation + ")", k.accepts, lead(k),
+    std::cout << fmt::format("  {}\n      {}{}\n      {}; {}{}\n", k.name, k.sentence, k.equation.empty() ? "" : " (" + k.equation + ")", k.accepts, lead(k),
                k.changeable ? "; may change on resume" : "");
-  for (const auto& [what, value] : entry.facts) fmt::print("  {:<10} {}\n", what, value);
+  for (const auto& [what, value] : entry.facts) std::cout << fmt::format("  {:<10} {}\n", what, value);
 }
 
 /// Text in a cell of a Markdown table.
@@ -30,12 +32,12 @@ std::string cell(const std::string& text) {
 }
 
 void print_keys(const CatalogEntry& entry) {
-  fmt::print("| key | accepts | default | what it means |\n|---|---|---|---|\n");
+  std::cout << fmt::format("| key | accepts | default | what it means |\n|---|---|---|---|\n");
   for (const KeyFacts& k : entry.keys)
-    fmt::print("| `{}` | {} | {} | {}{} |\n", k.name, cell(k.accepts),
+    std::cout << fmt::format("| `{}` | {} | {} | {}{} |\n", k.name, cell(k.accepts),
                k.required ? "required" : k.otherwise.empty() ? "" : "`" + cell(k.otherwise) + "`", cell(k.sentence),
                k.equation.empty() ? "" : " (" + k.equation + ")");
-  fmt::print("\n");
+  std::cout << fmt::format("\n");
 }
 
 /// A group whose entries have no keys: one table of all.
@@ -45,13 +47,13 @@ void print_facts(const CatalogGroup& group) {
     head += " " + what + " |";
     rule += "---|";
   }
-  fmt::print("{} what it is |\n{}---|\n", head, rule);
+  std::cout << fmt::format("{} what it is |\n{}---|\n", head, rule);
   for (const CatalogEntry& e : group.entries) {
-    fmt::print("| `{}` |", e.name);
-    for (const auto& [what, value] : e.facts) fmt::print(" {} |", cell(value));
-    fmt::print(" {} |\n", cell(e.sentence));
+    std::cout << fmt::format("| `{}` |", e.name);
+    for (const auto& [what, value] : e.facts) std::cout << fmt::format(" {} |", cell(value));
+    std::cout << fmt::format(" {} |\n", cell(e.sentence));
   }
-  fmt::print("\n");
+  std::cout << fmt::format("\n");
 }
 
 }  // namespace
@@ -59,8 +61,8 @@ void print_facts(const CatalogGroup& group) {
 int list_command() {
   const char* between = "";
   for (const CatalogGroup& group : catalog()) {
-    fmt::print("{}{}:\n", between, group.heading);
-    for (const CatalogEntry& entry : group.entries) fmt::print("  {:<24} {}\n", entry.name, entry.sentence);
+    std::cout << fmt::format("{}{}:\n", between, group.heading);
+    for (const CatalogEntry& entry : group.entries) std::cout << fmt::format("  {:<24} {}\n", entry.name, entry.sentence);
     between = "\n";
   }
   return 0;
@@ -73,7 +75,7 @@ int show_command(const std::string& name) {
     for (const CatalogEntry& entry : group.entries) {
       names.push_back(entry.name);
       if (entry.name != name) continue;
-      fmt::print("{}", between);
+      std::cout << fmt::format("{}", between);
       print_entry(group, entry);
       between = "\n";
     }
@@ -84,21 +86,21 @@ int show_command(const std::string& name) {
 }
 
 int reference_command() {
-  fmt::print(
+  std::cout << fmt::format(
       "# Reference\n\n"
       "All keys of a deck, all types, effects and fields. Printed by `sphgeo reference` from the declarations that the\n"
       "reader of decks uses; `sphgeo show NAME` prints one of them.\n\n"
       "Numbers are in SI units; a number with a unit, such as `18 kPa` or `30 deg`, is accepted where the dimension\n"
       "fits, and so are formulas of the deck's `variables`. `auto` stands for what the key's sentence says.\n");
   for (const CatalogGroup& group : catalog()) {
-    fmt::print("\n## {}{}\n\n{}\n\n", static_cast<char>(group.heading[0] - 'a' + 'A'), group.heading.substr(1), group.sentence);
+    std::cout << fmt::format("\n## {}{}\n\n{}\n\n", static_cast<char>(group.heading[0] - 'a' + 'A'), group.heading.substr(1), group.sentence);
     if (group.entries.empty()) continue;
     if (group.entries.front().keys.empty()) {
       print_facts(group);
       continue;
     }
     for (const CatalogEntry& entry : group.entries) {
-      fmt::print("### {}\n\n{}\n\n", entry.name, entry.sentence);
+      std::cout << fmt::format("### {}\n\n{}\n\n", entry.name, entry.sentence);
       print_keys(entry);
     }
   }

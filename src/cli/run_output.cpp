@@ -99,9 +99,7 @@ RunOutput run_output(const World<Dim>& world, const std::vector<Wish>& wishes, d
       out.frame_heads += std::min(bytes, head_bytes);
       out.buffer_bytes = std::max(out.buffer_bytes, buffers);
     }
-  for (const auto& set : world.sets())
-    for (const auto& [name, field] : set->fields())
-      if (field->spec().lifetime != Lifetime::derived) out.checkpoint_bytes += static_cast<double>(field->value_bytes());
+  for (const auto& set : world.sets()) out.checkpoint_bytes += saved_bytes(*set);
   const bool moves = std::any_of(model.boundaries.begin(), model.boundaries.end(), [](const auto& b) {
     const auto* wall = dynamic_cast<const WallBoundary*>(b.get());
     return wall && wall->motion.has_value();

@@ -25,6 +25,15 @@ struct RunOutput {
 template <int Dim>
 RunOutput run_output(const World<Dim>& world, const std::vector<Wish>& wishes, double steps);
 
+/// Bytes of a set's part of a checkpoint.
+template <int Dim>
+double saved_bytes(const ParticleSet<Dim>& set) {
+  double sum = 0;
+  for (const auto& [name, field] : set.fields())
+    if (field->spec().lifetime != Lifetime::derived) sum += static_cast<double>(field->value_bytes());
+  return sum;
+}
+
 /// Bytes of a frame of the boundaries; 0 without any.
 double boundaries_bytes(const Model& model);
 

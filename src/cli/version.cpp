@@ -4,7 +4,6 @@
 #include <H5public.h>
 #include <fmt/format.h>
 #include <muParser.h>
-#include <omp.h>
 #include <zlib.h>
 
 #include <Eigen/Core>
@@ -26,6 +25,11 @@ std::string compiler() {
 #endif
 }
 
+std::string muparser() {
+  const std::string text = mu::Parser().GetVersion(mu::pviBRIEF);  // "2.3.3 (Release)"
+  return text.substr(0, text.find(' '));
+}
+
 std::string hdf5() {
   unsigned major = 0, minor = 0, release = 0;
   H5get_libversion(&major, &minor, &release);
@@ -43,10 +47,10 @@ std::string version_text() {
       "commit     {}\n"
       "compiler   {}, {}, for {}\n"
       "vectors    {} bits: {} numbers in single, {} in double precision\n"
-      "threads    OpenMP {}, up to {}\n"
+      "threads    up to {}; OpenMP {} for vectors\n"
       "libraries  yaml-cpp {}, muparser {}, nlohmann-json {}.{}.{}, HDF5 {}, zlib {}, fmt {}.{}.{}, CLI11 {}, Eigen {}.{}.{}\n",
       SPHGEO_VERSION, SPHGEO_COMMIT, compiler(), SPHGEO_BUILD_TYPE, SPHGEO_ARCH, 8 * lane_bytes, native_width<float>,
-      native_width<double>, _OPENMP, threads(), SPHGEO_YAML_CPP, mu::Parser().GetVersion(mu::pviBRIEF), NLOHMANN_JSON_VERSION_MAJOR,
+      native_width<double>, threads(), _OPENMP, SPHGEO_YAML_CPP, muparser(), NLOHMANN_JSON_VERSION_MAJOR,
       NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH, hdf5(), zlibVersion(), FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
       FMT_VERSION % 100, CLI11_VERSION, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
 }

@@ -114,7 +114,6 @@ class WaterReinitialization final : public Effect<Dim> {
     lattice_ = lattice_sums(Kernel<Dim>(water_->smoothing_length()), water_->spacing()).number;
   }
 
-
   void apply(World<Dim>& world) override {
     const Numerics& n = world.model().numerics;
     world.with_pair_precision([&](auto number) {

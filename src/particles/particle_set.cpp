@@ -65,14 +65,10 @@ Index Field<T>::first_not_finite() const {
     const auto all = numbers_of(data(), size());
     constexpr Index components = sizeof(T) / sizeof(double);
     const auto block_bad = [&](Index begin, Index end) {
-      double lanes[8] = {};
-      Index k = begin * components;
-      const Index last = end * components;
-      for (; k + 8 <= last; k += 8)
-        for (int l = 0; l < 8; ++l) lanes[l] += 0.0 * all[static_cast<std::size_t>(k + l)];
-      for (; k < last; ++k) lanes[0] += 0.0 * all[static_cast<std::size_t>(k)];
+      const auto* values = all.data();
       double sum = 0;
-      for (const double l : lanes) sum += l;
+#pragma omp simd reduction(+ : sum)
+      for (Index k = begin * components; k < end * components; ++k) sum += 0.0 * values[k];
       return sum != 0.0;
     };
     constexpr int large_block = 16 * block_size;

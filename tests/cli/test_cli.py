@@ -60,6 +60,10 @@ class CommandLine(unittest.TestCase):
         self.refused(2, "no option '--verison'; did you mean '--version'?", "--verison")
         for words in (["--help"], ["run", "--help"], ["--version"]):
             self.assertIn("sphgeo", self.accepted(*words).stdout)
+        about = self.accepted("--version").stdout
+        for line in (r"^sphgeo \d+\.\d+\.\d+$", r"^commit +\S+$", r"^compiler +(GCC|Clang) \d", r"^vectors +\d+ bits", r"^threads +OpenMP \d+",
+                     r"^libraries .*yaml-cpp \d.*muparser \d.*HDF5 \d.*zlib \d.*fmt \d.*Eigen \d"):
+            self.assertRegex(about, f"(?m){line}")
 
     def test_options(self):
         self.refused(2, "'sphgeo check' has no option '--explian'; did you mean '--explain'?",
@@ -150,13 +154,24 @@ class CommandLine(unittest.TestCase):
         shown = self.accepted("show", "tank").stdout
         for key in ("name", "min", "max", "open", "slip"):
             self.assertRegex(shown, rf"(?m)^  {key}$")
+        for name, kind, says in (("numerics", "section", "cfl_acoustic"), ("expect", "section", "tolerance"),
+                                 ("body", "section", "filling"), ("deck", "section", "resolution"),
+                                 ("water_momentum", "effect", "Eqs. 60-63"), ("density", "field", "kg/m3")):
+            shown = self.accepted("show", name).stdout
+            self.assertIn(f"{name} ({kind}): ", shown)
+            self.assertIn(says, shown)
+            self.assertRegex(listed, rf"(?m)^  {name} ")
+        # A key has its unit, range, default and equation.
+        for text in ("(Eq. 63)", "at least 0", "default 3", "one of single or double"):
+            self.assertIn(text, self.accepted("show", "numerics").stdout)
+        self.assertIn("required", self.accepted("show", "tank").stdout)
         self.refused(2, "no type 'bxo'; did you mean 'box'?", "show", "bxo")
         self.refused(2, "'sphgeo list'", "show", "no_such_thing_at_all")
 
     def test_a_full_disk_is_said(self):
         if not Path("/dev/full").exists():
             self.skipTest("no /dev/full")
-        for command in ("schema", "list"):
+        for command in ("schema", "list", "reference"):
             with open("/dev/full", "w") as full:
                 done = subprocess.run([SPHGEO, command], stdout=full, stderr=subprocess.PIPE, text=True)
             self.assertEqual(done.returncode, 5, command)

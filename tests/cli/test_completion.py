@@ -65,7 +65,7 @@ class Completion(unittest.TestCase):
 
     def test_zsh(self):
         text = ZSH.read_text()
-        listed = set(re.findall(r"(?m)^    '(\w+):", text))
+        listed = set(re.findall(r"(?m)^    '([a-z]+):", text))
         self.assertEqual(listed, set(commands()))
         branches = {}
         for names, body in re.findall(r"(?ms)^    ([a-z |]+)\)\n(.*?);;", text):
