@@ -61,7 +61,7 @@ class CommandLine(unittest.TestCase):
         for words in (["--help"], ["run", "--help"], ["--version"]):
             self.assertIn("sphgeo", self.accepted(*words).stdout)
         about = self.accepted("--version").stdout
-        for line in (r"^sphgeo \d+\.\d+\.\d+$", r"^commit +\S+$", r"^compiler +(GCC|Clang) \d", r"^vectors +\d+ bits", r"^threads +OpenMP \d+",
+        for line in (r"^sphgeo \d+\.\d+\.\d+$", r"^commit +\S+$", r"^compiler +(GCC|Clang) \d", r"^vectors +\d+ bits", r"^threads +up to \d+",
                      r"^libraries .*yaml-cpp \d.*muparser \d.*HDF5 \d.*zlib \d.*fmt \d.*Eigen \d"):
             self.assertRegex(about, f"(?m){line}")
 
