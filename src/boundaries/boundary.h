@@ -28,6 +28,14 @@ struct WallPoint {
   Vec3 normal;
 };
 
+/// A side of a boundary that the deck left without a wall, closed by points one spacing apart.
+struct OpenFace {
+  std::string name;
+  int axis;   ///< that it is across
+  bool high;  ///< on the side of larger coordinates
+  std::vector<Vec3> points;
+};
+
 /// How a wall acts on the tangential motion of the water.
 enum class Slip { no_slip, free_slip };
 
@@ -45,6 +53,8 @@ struct WallBoundary : BoundarySpec {
   }
   /// The solid as a shape, for checks and pictures; null when it has none.
   virtual std::shared_ptr<const Shape> solid(const Placement&) const = 0;
+  /// The sides that are open on purpose, at t = 0; for checks.
+  virtual std::vector<OpenFace> open_faces(const Placement&) const { return {}; }
 
   Slip slip_kind() const { return slip == "no_slip" ? Slip::no_slip : Slip::free_slip; }
 };

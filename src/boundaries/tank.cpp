@@ -134,6 +134,27 @@ struct Tank final : WallBoundary {
     return all - within;
   }
 
+  std::vector<OpenFace> open_faces(const Placement& p) const override {
+    std::vector<OpenFace> gaps;
+    for (const Face& f : faces) {
+      if (!is_open(f.axis, f.high) || (p.dimension == 2 && f.axis == 1)) continue;
+      OpenFace gap{f.name, f.axis, f.high, {}};
+      std::array<std::vector<double>, 3> at;
+      for (int k = 0; k < 3; ++k) {
+        const Axis a = axis(k, p);
+        if (k == f.axis) at[static_cast<std::size_t>(k)] = {f.high ? max[k] + 0.5 * p.spacing : min[k] - 0.5 * p.spacing};
+        else
+          for (std::size_t i = 0; i < a.at.size(); ++i)
+            if (!a.outside[i]) at[static_cast<std::size_t>(k)].push_back(a.at[i]);
+      }
+      for (const double z : at[2])
+        for (const double y : at[1])
+          for (const double x : at[0]) gap.points.emplace_back(x, y, z);
+      gaps.push_back(std::move(gap));
+    }
+    return gaps;
+  }
+
   std::shared_ptr<const Shape> solid(const Placement& p) const override {
     auto outer = std::make_shared<Box>(), inner = std::make_shared<Box>();
     outer->flat = inner->flat = p.dimension == 2;

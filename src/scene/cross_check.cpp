@@ -8,6 +8,8 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "probes/probe.h"
+#include "scene/leak.h"
+#include "scene/wall_check.h"
 
 namespace sphgeo {
 namespace {
@@ -149,6 +151,8 @@ void check_scene(const Scene<Dim>& scene, Diagnostics& found) {
   check_water_in_walls(world, found);
   check_lengths(world, found);
   check_probes(world, found);
+  check_walls(scene, found);
+  check_leaks(scene, found);
 }
 
 template void check_scene<2>(const Scene<2>&, Diagnostics&);

@@ -1,0 +1,196 @@
+#include "scene/wall_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/parallel.h"
+#include "geometry/shapes.h"
+#include "probes/probe.h"
+#include "scene/shadow.h"
+
+namespace sphgeo {
+namespace {
+
+std::string point_text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z()); }
+
+/// A boundary with the solid it was made from.
+struct Solid {
+  std::string path;
+  const WallBoundary* wall;
+  std::shared_ptr<const Shape> shape;  ///< null: none
+  bool in_place;                       ///< stands at t = 0 where its shape is
+};
+
+template <int Dim>
+std::vector<Solid> solids_of(const Model& model) {
+  std::vector<Solid> solids;
+  const Placement placement{model.resolution, support_radius(model), Dim};
+  for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
+    const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
+    Solid s{fmt::format("boundaries[{}]", b), &wall, wall.solid(placement), true};
+    if (wall.motion)
+      for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)})
+        s.in_place = s.in_place && (wall.motion->position(p, 0) - p).norm() < 1e-9;
+    solids.push_back(std::move(s));
+  }
+  return solids;
+}
+
+template <int Dim>
+void check_solid(const Scene<Dim>& scene, const Solid& s, Diagnostics& found) {
+  const Model& model = scene.world->model();
+  if (s.shape) {
+    CheckContext context(found, model.places, s.path + ".shape", model.dimension, model.resolution);
+    s.shape->inspect(context);
+  }
+  const auto filled = std::find_if(scene.boundary_particles.begin(), scene.boundary_particles.end(),
+                                   [&](const auto& p) { return p.first == s.wall->name; });
+  if (filled != scene.boundary_particles.end() && filled->second == 0)
+    found.error("E115", model.place_of(s.path), s.path, fmt::format("boundary '{}' holds no particle: water passes through it", s.wall->name),
+                fmt::format("make it at least one spacing ({} m) thick, or refine the resolution", model.resolution));
+  if (!s.shape || s.shape->type != "box") return;
+  const Aabb box = s.shape->box();
+  for (int k = 0; k < 3; ++k) {
+    if (k == 1 && Dim == 2) continue;
+    const double length = box.hi[k] - box.lo[k], cells = length / model.resolution;
+    if (std::abs(cells - std::round(cells)) < 1e-6 * cells + 1e-6 || std::round(cells) < 1) continue;
+    found.warning("W122", model.place_of(s.path + ".shape"), s.path + ".shape",
+                  fmt::format("the length of boundary '{}' along {} is {:.4g} spacings, no whole number", s.wall->name, "xyz"[k], cells),
+                  fmt::format("its face at {} = {:.6g} m is felt {:.2g} spacings off; a resolution of {:.6g} m would fit", "xyz"[k], box.hi[k],
+                              std::abs(cells - std::floor(cells + 0.5)), length / std::round(cells)));
+  }
+}
+
+// Water deep in a solid, where there are no wall particles. What is near its surface is found by
+// check_water_in_walls, which also knows moving boundaries.
+template <int Dim>
+void check_water_in_solid(const World<Dim>& world, const Solid& s, Diagnostics& found) {
+  const ParticleSet<Dim>* water = world.find("water");
+  if (!water || !s.shape || !s.in_place) return;
+  const Model& model = world.model();
+  const Aabb box = s.shape->box();
+  const auto& x = water->vector(fields::position);
+  const double reach = support_radius(model);
+  const auto deep = [&](Index i) {
+    const Vec3 at = to_space<Dim>(x[i]);
+    return box.contains(at) && distance_bound(*s.shape, at) < -0.5 * model.resolution && s.shape->signed_distance(at) < -reach;
+  };
+  const double count = ordered_sum(water->size(), [&](Index i) { return deep(i) ? 1.0 : 0.0; });
+  if (!(count > 0)) return;
+  Index first = 0;
+  while (!deep(first)) ++first;
+  const auto body = static_cast<std::size_t>(water->tag(fields::part)[first]);
+  const std::string path = fmt::format("bodies[{}].shape", body);
+  for (const Diagnostic& d : found.items())
+    if (d.id == "E121" && d.path == path) return;
+  found.error("E121", model.place_of(path), path,
+              fmt::format("body '{}' overlaps boundary '{}': {:.0f} particles lie deep in the solid, one at {}", model.bodies[body].name, s.wall->name,
+                          count, point_text(to_space<Dim>(x[first]))),
+              "let the body end at the surface of the wall");
+}
+
+// Particles of two resting boundaries in one place push the water twice.
+template <int Dim>
+void check_overlap(const World<Dim>& world, Diagnostics& found) {
+  const ParticleSet<Dim>* walls = world.find("walls");
+  const Model& model = world.model();
+  if (!walls || walls->size() == 0 || model.boundaries.size() < 2) return;
+  const auto& x = walls->vector(fields::position);
+  const auto& part = walls->tag(fields::part);
+  CellGrid<Dim> grid;
+  grid.build({x.data(), static_cast<std::size_t>(x.size())}, FixedPoint<Dim>::fit(world.domain_lo(), world.domain_hi(), support_radius(model)),
+             model.resolution);
+  const auto rests = [&](std::int32_t b) { return !dynamic_cast<const WallBoundary&>(*model.boundaries[static_cast<std::size_t>(b)]).motion; };
+  std::map<std::pair<std::int32_t, std::int32_t>, std::pair<Index, Index>> clashes;  // boundaries -> count, first
+  for (Index i = 0; i < walls->size(); ++i) {
+    std::int32_t other = -1;
+    grid.for_each_in_reach(x[i], 0.45 * model.resolution, [&](Index j, double) {
+      if (part[j] < part[i]) other = std::max(other, part[j]);
+    });
+    if (other < 0 || !rests(other) || !rests(part[i])) continue;
+    auto& c = clashes.try_emplace({other, part[i]}, 0, i).first->second;
+    ++c.first;
+  }
+  for (const auto& [who, what] : clashes) {
+    const std::string path = fmt::format("boundaries[{}]", who.second);
+    found.warning("W127", model.place_of(path), path,
+                  fmt::format("boundaries '{}' and '{}' overlap: {} particles lie in both and push twice, one at {}",
+                              model.boundaries[static_cast<std::size_t>(who.first)]->name, model.boundaries[static_cast<std::size_t>(who.second)]->name,
+                              what.first, point_text(to_space<Dim>(x[what.second]))),
+                  "let them meet without overlap, or make them one boundary with a shape of type union");
+  }
+}
+
+void check_probes(const Model& model, const std::vector<Solid>& solids, Diagnostics& found) {
+  for (std::size_t k = 0; k < model.probes.size(); ++k) {
+    const auto& probe = dynamic_cast<const Probe&>(*model.probes[k]);
+    for (const Vec3& at : probe.places())
+      for (const Solid& s : solids) {
+        if (!s.shape || !s.in_place || s.wall->motion) continue;
+        const double depth = s.shape->box().contains(at) ? -s.shape->signed_distance(at) : 0;
+        // The outermost layer stands half a spacing below the surface: so far a probe may miss it.
+        if (depth < 0.5 * model.resolution + 1e-9) continue;
+        const std::string path = fmt::format("probes[{}].at", k);
+        found.warning("W128", model.place_of(path), path,
+                      fmt::format("probe '{}' at {} lies inside boundary '{}', {:.3g} m below its surface", probe.name, point_text(at), s.wall->name, depth),
+                      "move it to the surface or into the water");
+        break;
+      }
+  }
+}
+
+// A body with no boundary anywhere below it, although the scene has boundaries.
+template <int Dim>
+void check_bodies_held(const World<Dim>& world, Diagnostics& found) {
+  const Model& model = world.model();
+  const ParticleSet<Dim>*water = world.find("water"), *walls = world.find("walls");
+  if (!water || !walls || walls->size() == 0 || model.body_force || !(model.gravity.norm() > 0)) return;
+  int down = 0;
+  model.gravity.cwiseAbs().maxCoeff(&down);
+  if (std::abs(model.gravity[down]) < 0.999 * model.gravity.norm() || (Dim == 2 && down == 1)) return;
+  const auto& x = water->vector(fields::position);
+  const auto& y = walls->vector(fields::position);
+  Aabb all;
+  for (Index i = 0; i < water->size(); ++i) all.extend(to_space<Dim>(x[i]));
+  for (Index i = 0; i < walls->size(); ++i) all.extend(to_space<Dim>(y[i]));
+  Shadow shadow(down, model.resolution, all);
+  for (Index i = 0; i < walls->size(); ++i) shadow.add(to_space<Dim>(y[i]));
+  std::vector<bool> held(model.bodies.size(), false), seen(held), moving(held);
+  for (Index i = 0; i < water->size(); ++i) {
+    const auto b = static_cast<std::size_t>(water->tag(fields::part)[i]);
+    seen[b] = true;
+    moving[b] = moving[b] || water->vector(fields::velocity)[i].squaredNorm() > 0;
+    held[b] = held[b] || shadow.beyond(to_space<Dim>(x[i]), model.gravity[down] > 0);
+  }
+  for (std::size_t b = 0; b < held.size(); ++b) {
+    if (!seen[b] || held[b] || moving[b]) continue;
+    const std::string path = fmt::format("bodies[{}].shape", b);
+    found.warning("W129", model.place_of(path), path, fmt::format("nothing is below body '{}': it falls out of the scene", model.bodies[b].name),
+                  "move it over a boundary");
+  }
+}
+
+}  // namespace
+
+template <int Dim>
+void check_walls(const Scene<Dim>& scene, Diagnostics& found) {
+  const World<Dim>& world = *scene.world;
+  const std::vector<Solid> solids = solids_of<Dim>(world.model());
+  for (const Solid& s : solids) {
+    check_solid(scene, s, found);
+    check_water_in_solid(world, s, found);
+  }
+  check_overlap(world, found);
+  check_probes(world.model(), solids, found);
+  check_bodies_held(world, found);
+}
+
+template void check_walls<2>(const Scene<2>&, Diagnostics&);
+template void check_walls<3>(const Scene<3>&, Diagnostics&);
+
+}  // namespace sphgeo

@@ -1,0 +1,17 @@
+#pragma once
+// Rules of a deck about its boundaries.
+
+#include "scene/build.h"
+
+namespace sphgeo {
+
+/// Findings about boundaries: damaged surfaces, boundaries without particles (E115), boxes that are
+/// no multiple of the spacing (W122), water deep in a solid (E121), resting boundaries that overlap
+/// (W127), probes inside a solid (W128), bodies beside the scene with nothing to hold them (W129).
+template <int Dim>
+void check_walls(const Scene<Dim>& scene, Diagnostics& found);
+
+extern template void check_walls<2>(const Scene<2>&, Diagnostics&);
+extern template void check_walls<3>(const Scene<3>&, Diagnostics&);
+
+}  // namespace sphgeo
