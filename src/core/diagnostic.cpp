@@ -142,6 +142,8 @@ std::string Diagnostics::render(bool color) const {
                        c.off, d->help.empty() ? "" : " ", d->help);
   }
   if (errors > most_errors) out += fmt::format("... and {} more errors\n", errors - most_errors);
+  // A line of the deck is shown as it stands, but a terminal takes nothing that is no UTF-8.
+  for (auto at = invalid_utf8(out); at != std::string::npos; at = invalid_utf8(out)) out[at] = '?';
   return out;
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <string>
 #include <vector>
 
@@ -94,38 +93,6 @@ void check_water_in_solid(const World<Dim>& world, const Solid& s, Diagnostics& 
               "let the body end at the surface of the wall");
 }
 
-// Particles of two resting boundaries in one place push the water twice.
-template <int Dim>
-void check_overlap(const World<Dim>& world, Diagnostics& found) {
-  const ParticleSet<Dim>* walls = world.find("walls");
-  const Model& model = world.model();
-  if (!walls || walls->size() == 0 || model.boundaries.size() < 2) return;
-  const auto& x = walls->vector(fields::position);
-  const auto& part = walls->tag(fields::part);
-  CellGrid<Dim> grid;
-  grid.build({x.data(), static_cast<std::size_t>(x.size())}, FixedPoint<Dim>::fit(world.domain_lo(), world.domain_hi(), support_radius(model)),
-             model.resolution);
-  const auto rests = [&](std::int32_t b) { return !dynamic_cast<const WallBoundary&>(*model.boundaries[static_cast<std::size_t>(b)]).motion; };
-  std::map<std::pair<std::int32_t, std::int32_t>, std::pair<Index, Index>> clashes;  // boundaries -> count, first
-  for (Index i = 0; i < walls->size(); ++i) {
-    std::int32_t other = -1;
-    grid.for_each_in_reach(x[i], 0.45 * model.resolution, [&](Index j, double) {
-      if (part[j] < part[i]) other = std::max(other, part[j]);
-    });
-    if (other < 0 || !rests(other) || !rests(part[i])) continue;
-    auto& c = clashes.try_emplace({other, part[i]}, 0, i).first->second;
-    ++c.first;
-  }
-  for (const auto& [who, what] : clashes) {
-    const std::string path = fmt::format("boundaries[{}]", who.second);
-    found.warning("W127", model.place_of(path), path,
-                  fmt::format("boundaries '{}' and '{}' overlap: {} particles lie in both and push twice, one at {}",
-                              model.boundaries[static_cast<std::size_t>(who.first)]->name, model.boundaries[static_cast<std::size_t>(who.second)]->name,
-                              what.first, point_text(to_space<Dim>(x[what.second]))),
-                  "let them meet without overlap, or make them one boundary with a shape of type union");
-  }
-}
-
 void check_probes(const Model& model, const std::vector<Solid>& solids, Diagnostics& found) {
   for (std::size_t k = 0; k < model.probes.size(); ++k) {
     const auto& probe = dynamic_cast<const Probe&>(*model.probes[k]);
@@ -185,7 +152,6 @@ void check_walls(const Scene<Dim>& scene, Diagnostics& found) {
     check_solid(scene, s, found);
     check_water_in_solid(world, s, found);
   }
-  check_overlap(world, found);
   check_probes(world.model(), solids, found);
   check_bodies_held(world, found);
 }
