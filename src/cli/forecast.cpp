@@ -32,6 +32,8 @@ constexpr double generous_bytes = 10'000;
 constexpr double fixed_files = 16'000;
 // What HDF5 takes for itself when it builds a checkpoint: its code and caches, as measured.
 constexpr double checkpoint_library = 5.5e6;
+// What a checkpoint holds beside particles: the deck, counters, and HDF5's own tables.
+constexpr double checkpoint_fixed = 265e3;
 // An entry of a collection of frames.
 constexpr double entry_bytes = 90;
 
@@ -206,7 +208,7 @@ RunFigures ForecastBasis::figures(double coarser, const ParticleCounts& at, int 
   // The last checkpoint and the one before it.
   const double checkpoints = r.wall_s && *r.wall_s > model_.output.checkpoint_every ? 2 : 1;
   r.disk_bytes = static_cast<std::uint64_t>(fixed_files + output_.samples_bytes + output_.frames * (output_.frame_heads + (output_.frame_bytes - output_.frame_heads) * larger + 2 * entry_bytes) +
-                                            output_.walls_bytes * walls + checkpoints * output_.checkpoint_bytes * larger);
+                                            output_.walls_bytes * walls + checkpoints * (checkpoint_fixed + output_.checkpoint_bytes * larger));
   return r;
 }
 
