@@ -98,6 +98,12 @@ Recorder<Dim>::Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& fol
 }
 
 template <int Dim>
+void Recorder<Dim>::flush() {
+  run_.flush(true);
+  for (ProbeRun& p : probes_) p.series->flush(true);
+}
+
+template <int Dim>
 void Recorder<Dim>::save(StateSink& sink) {
   const auto put_bytes = [&](const std::string& at, Series& series) {
     sink.put_count(at + "/bytes", static_cast<std::int64_t>(series.flush(true)));

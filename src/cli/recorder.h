@@ -47,6 +47,8 @@ class Recorder {
 
   /// At a safe point: samples whatever is due; `last` takes a row of everything.
   void observe(double wall_seconds, bool last);
+  /// Brings all rows to the disk. Throws IoError: the last rows are not lost in silence.
+  void flush();
   /// Writes a frame of the state at hand, whatever the schedule says (post-mortem).
   void write_frame();
 

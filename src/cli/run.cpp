@@ -135,6 +135,7 @@ class DeckRun {
 
   void finish(const RunParts<Dim>& parts, const Keeper<Dim>& keeper, const RunFolder& folder, const std::optional<UnstableError>& failure) {
     const World<Dim>& world = parts.world;
+    parts.recorder.flush();
     summary_.expect = evaluate(model_.expect, [&](const std::string& name) { return parts.recorder.series(name); });
     bool met = true;
     for (const ExpectResult& r : summary_.expect) met = met && r.pass;

@@ -44,8 +44,10 @@ void sync_folder_of(const std::string& path) {
   const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return;
-  ::fsync(descriptor);
+  const int error = ::fsync(descriptor) == 0 ? 0 : errno;
   ::close(descriptor);
+  // Some file systems have nothing to synchronize for a folder.
+  if (error != 0 && error != EINVAL && error != ENOTSUP) throw_io_error(path, "cannot flush the folder to the disk", error);
 }
 
 }  // namespace

@@ -96,7 +96,11 @@ class Faults(unittest.TestCase):
     def fails_at(self, kind, n, error, more=""):
         with tempfile.TemporaryDirectory(dir=self.here) as name:
             folder = Path(name) / "run"
-            done = self.run_deck(folder, fault=f"{kind}:{n}{more}:{error}")
+            self.log.unlink(missing_ok=True)
+            done = self.run_deck(folder, fault=f"{kind}:{n}{more}:{error}", log=True)
+            if done.returncode == 0 and sum(l.startswith(kind + " ") for l in self.log.read_text().splitlines()) < n:
+                self.assertGreater(n, self.calls[kind] / 2)
+                return None  # how many checkpoints there are depends on the clock: this run had fewer calls
             self.check_refused(done, folder, error)
             # What is there suffices to go on.
             done_later = self.run_deck(folder, "--resume")
@@ -113,7 +117,9 @@ class Faults(unittest.TestCase):
     def test_every_write_may_meet_a_full_disk(self):
         for n in range(1, self.calls["write"] + 1):
             with self.subTest(n=n):
-                self.assertRegex(self.fails_at("write", n, errno.ENOSPC, "+"), r"\d+ bytes")
+                said = self.fails_at("write", n, errno.ENOSPC, "+")
+                if said is not None:
+                    self.assertRegex(said, r"\d+ bytes")
 
     def test_every_write_may_fail_once(self):
         # A later flush of a table may succeed, so only the error and the files count.
