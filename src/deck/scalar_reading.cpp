@@ -72,7 +72,8 @@ bool is_no_formula(const Node& node, const FormulaError& e, const DeckReading& r
   if (!e.unknown_name.empty()) {
     std::vector<std::string> names;
     for (const auto& v : reading.variables.values) names.push_back(v.first);
-    return is_one_name(node.text) && node.text.size() > 1 &&
+    // When the variables could not be read, any name may be one of them.
+    return !reading.variables_unreadable && is_one_name(node.text) && node.text.size() > 1 &&
            reading.variables.find(node.text) == nullptr && nearest_name(node.text, names).empty();
   }
   return std::all_of(node.text.begin(), node.text.end(), plain);

@@ -73,6 +73,7 @@ void HeightField::prepare() {
     ny = heights.size() / nx;
     grid_ = heights;
   }
+  if (ny < 1) fail("there is no row of heights");
   if (nx < 2) fail("at least two heights in a row are needed");
   for (double& v : grid_) {
     if (!std::isfinite(v)) fail("a height is missing or not finite");
