@@ -98,6 +98,7 @@ FieldBase& ParticleSet<Dim>::require(const FieldSpec& spec) {
     switch (spec.type) {
       case FieldType::scalar: slot = std::make_unique<Field<double>>(spec); break;
       case FieldType::vector: slot = std::make_unique<Field<Vec<Dim>>>(spec); break;
+      case FieldType::tensor: slot = std::make_unique<Field<Sym3>>(spec); break;
       case FieldType::tag: slot = std::make_unique<Field<std::int32_t>>(spec); break;
       case FieldType::identity: slot = std::make_unique<Field<Id>>(spec); break;
     }

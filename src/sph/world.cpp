@@ -110,7 +110,7 @@ void World<Dim>::rearrange() {
     grid.build({x.data(), static_cast<std::size_t>(x.size())}, frame_, reach());
     s->permute({grid.order().begin(), grid.order().end()});
     grid.set_sorted();
-    for (int which = 0; which < 2; ++which) {
+    for (int which = 0; which < 4; ++which) {
       const auto it = records_.find({s->name(), which});
       if (it == records_.end()) continue;
       if (single_) it->second.single.resize(s->size(), frame_);
