@@ -266,7 +266,13 @@ void check_leaks(const Scene<Dim>& scene, Diagnostics& found) {
     FloodFrame here = frame;
     here.box.extend(own);
     (frame.up_is_high ? here.box.hi : here.box.lo)[frame.up] = (frame.up_is_high ? own.hi : own.lo)[frame.up];
-    if (FloodGrid::size_of(here) > most_cells) continue;  // minutes for a check that is only a help
+    if (const double cells = FloodGrid::size_of(here); cells > most_cells) {  // minutes for a check that is only a help
+      found.add({Severity::note, "N127", model.place_of("resolution"), "resolution",
+                 fmt::format("not checked whether '{}' can run out of its container: that would take {:.2g} cells of half a spacing, and at most {:g} are tried",
+                             s->name(), cells, most_cells),
+                 "the check with a coarser --set resolution=... finds gaps that are wide there"});
+      continue;
+    }
     LeakSearch(model, parts, here, upright, found).run(liquid, body);
   }
 }

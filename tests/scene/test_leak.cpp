@@ -153,6 +153,19 @@ TEST_SUITE("scene") {
     CHECK(silent(pool(1, 0.4) + trough(0.02)));
   }
 
+  TEST_CASE("a scene too wide for its spacing is not searched, and that is said") {
+    // A leaking trough, and a second one far away and below.
+    const auto far = [](double at) {
+      return pool(1, 0.4) + trough(0.05) + wall("far", fmt::format("{{type: box, min: [{}, 0, {}], max: [{}, 0.4, {}]}}", at, -at, at + 0.2, 0.2 - at));
+    };
+    const Leaks wide = leaks<2>(far(400));
+    CHECK(wide.found == Found{"N127 resolution"});
+    CHECK(wide.message.find("'water'") != std::string::npos);
+    CHECK(wide.message.find("2.6e+08 cells") != std::string::npos);
+    CHECK(leaks<2>(far(40)).found.size() == 1);
+    CHECK(leaks<2>(far(40)).found[0].starts_with("W125"));
+  }
+
   TEST_CASE("gaps in the floor, at half height and in an upright edge are found") {
     const auto floor = [](const std::string& right) {
       return "boundaries:\n" + wall("floor", box(-0.2, -0.2, 0.5, 0, -0.2, 0.6)) + wall("floor2", box(0.6, -0.2, 1.2, 0, -0.2, 0.6)) +
