@@ -78,7 +78,7 @@ std::string complaint(const CLI::App& app, const CLI::ParseError& error) {
 int usage_error(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
   const auto chosen = app.get_subcommands();
-  std::cerr << "error: " << complaint(app, error) << "\n";
+  std::cerr << "error: " << printable(complaint(app, error), "\n") << "\n";
   if (chosen.empty())
     std::cerr << "  'sphgeo --help' lists the commands\n";
   else
@@ -113,17 +113,17 @@ int run_guarded(const std::function<int()>& command) {
     std::cerr << e.diagnostics.render(progress_style_of_stderr().color);
     return static_cast<int>(e.code());
   } catch (const Error& e) {
-    std::cerr << "error: " << e.what() << "\n";
+    std::cerr << "error: " << printable(e.what(), "\n") << "\n";
     return static_cast<int>(e.code());
   } catch (const std::bad_alloc&) {
     std::cerr << "error: there is not enough memory for this scene\n";
     return static_cast<int>(ExitCode::internal);
   } catch (const std::system_error& e) {
     if (std::ferror(stdout) != 0) return lost_output(e.code().value());
-    std::cerr << "internal error: " << e.what() << "\n";
+    std::cerr << "internal error: " << printable(e.what(), "\n") << "\n";
     return static_cast<int>(ExitCode::internal);
   } catch (const std::exception& e) {
-    std::cerr << "internal error: " << e.what() << "\n";
+    std::cerr << "internal error: " << printable(e.what(), "\n") << "\n";
     return static_cast<int>(ExitCode::internal);
   }
 }

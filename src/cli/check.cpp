@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "scene/build.h"
 #include "scene/cross_check.h"
 
@@ -111,7 +112,7 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
     std::cout << j.dump(2) << "\n";
     return 0;
   }
-  std::cout << fmt::format("{}: {} dimensions, spacing {} m, {} s\n", model.title.empty() ? options.deck : model.title, Dim, model.resolution, model.end_time);
+  std::cout << fmt::format("{}: {} dimensions, spacing {} m, {} s\n", printable(model.title.empty() ? options.deck : model.title), Dim, model.resolution, model.end_time);
   for (const auto& set : world.sets()) std::cout << fmt::format("  {:<10} {:>10} particles\n", set->name(), set->size());
   for (const auto& [name, n] : scene.body_particles) std::cout << fmt::format("    body '{}': {}\n", name, n);
   for (const auto& [name, n] : scene.boundary_particles) std::cout << fmt::format("    boundary '{}': {}\n", name, n);

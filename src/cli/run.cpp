@@ -13,6 +13,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/text.h"
 #include "output/progress.h"
 #include "scene/build.h"
 #include "scene/cross_check.h"
@@ -36,9 +37,9 @@ FoundCheckpoint checkpoint_of(const RunOptions& options, const Model& model) {
   if (!options.resume || !holds_results(options.folder)) return {};
   const std::string folder = options.folder;
   FoundCheckpoint found = find_checkpoint(folder + "/checkpoint.h5", folder + "/checkpoint.prev.h5");
-  for (const std::string& warning : found.warnings) std::cerr << "warning: " << warning << "\n";
+  for (const std::string& warning : found.warnings) std::cerr << "warning: " << printable(warning) << "\n";
   if (!found.reader) {
-    std::cerr << "warning: " << folder << " holds no checkpoint yet: the run starts at t = 0\n";
+    std::cerr << "warning: " << printable(folder) << " holds no checkpoint yet: the run starts at t = 0\n";
     return {};
   }
   require_same_deck(model, *found.reader);
@@ -78,7 +79,7 @@ class DeckRun {
       stepper.load(*resumed);
       wall_before_ = resumed->number("wall_seconds");
       steps_before_ = world.clock.advection_steps;
-      std::cerr << fmt::format("going on from t = {:.6g} s, advection step {} ({})\n", world.clock.time, steps_before_, checkpoint.path);
+      std::cerr << fmt::format("going on from t = {:.6g} s, advection step {} ({})\n", world.clock.time, steps_before_, printable(checkpoint.path));
     }
     write_file_atomically(folder.resolved_deck(), resolved_yaml(model_));
     Recorder<Dim> recorder(world, plan, folder, resumed);
@@ -204,8 +205,8 @@ class DeckRun {
     if (summary_.status == "stopped")
       std::cerr << fmt::format("stopped at t = {:.6g} s: {}; the same command with --resume goes on\n", summary_.time_s, summary_.message);
     else if (!summary_.message.empty())
-      std::cerr << "error: " << summary_.message << "\n"
-                << (summary_.checkpoint.count > 0 ? "the last checkpoint is sound: " + folder.checkpoint() + "\n" : "");
+      std::cerr << "error: " << printable(summary_.message, "\n") << "\n"
+                << (summary_.checkpoint.count > 0 ? "the last checkpoint is sound: " + printable(folder.checkpoint()) + "\n" : "");
   }
 
   const Model& model_;

@@ -42,13 +42,6 @@ const char* severity_name(Severity s) {
   return s == Severity::error ? "error" : s == Severity::warning ? "warning" : "note";
 }
 
-/// Tabs as single blanks so that the caret stands under the right letter.
-std::string without_tabs(std::string_view line) {
-  std::string out(line);
-  std::replace(out.begin(), out.end(), '\t', ' ');
-  return out;
-}
-
 /// Characters of UTF-8, each taken to be as wide as a letter.
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
@@ -71,8 +64,8 @@ std::string heading(const Diagnostic& d, const Colors& c) {
   std::string message = shortened(d.message, longest_message);
   if (!d.path.empty() && message.find(d.path) == std::string::npos)
     message = d.path + ": " + message;
-  return fmt::format("{}{}{}{}[{}]{}: {}\n", c.bold, at, c.strong, severity_name(d.severity), d.id,
-                     c.off, message);
+  return fmt::format("{}{}{}{}[{}]{}: {}\n", c.bold, printable(at), c.strong, severity_name(d.severity), d.id,
+                     c.off, printable(message));
 }
 
 }  // namespace
@@ -128,22 +121,23 @@ std::string Diagnostics::render(bool color) const {
       line = line_of(sources_[source].text, d->place.line);
     }
     constexpr std::size_t widest = 200;
+    const std::string help = printable(d->help);
     if (line.empty() || line.size() > widest) {
-      if (!d->help.empty()) out += fmt::format("      = help: {}\n", d->help);
+      if (!help.empty()) out += fmt::format("      = help: {}\n", help);
       continue;
     }
     const std::size_t column =
         std::min(static_cast<std::size_t>(std::max(1, d->place.column) - 1), line.size());
     const std::size_t length = word_length(line, column);
-    const std::size_t width = std::max<std::size_t>(1, width_of(line.substr(column, length)));
+    // Widths are those of what is shown: a blank or '?' for each character that is not.
+    const std::size_t before = width_of(printable(line.substr(0, column)));
+    const std::size_t width = std::max<std::size_t>(1, width_of(printable(line.substr(column, length))));
     const std::string marks = "^" + std::string(width - 1, '~');
-    out += fmt::format("{:>5} | {}\n", d->place.line, without_tabs(line));
-    out += fmt::format("{:>5} | {}{}{}{}{}{}\n", "", std::string(width_of(line.substr(0, column)), ' '), c.strong, marks,
-                       c.off, d->help.empty() ? "" : " ", d->help);
+    out += fmt::format("{:>5} | {}\n", d->place.line, printable(line));
+    out += fmt::format("{:>5} | {}{}{}{}{}{}\n", "", std::string(before, ' '), c.strong, marks, c.off,
+                       help.empty() ? "" : " ", help);
   }
   if (errors > most_errors) out += fmt::format("... and {} more errors\n", errors - most_errors);
-  // A line of the deck is shown as it stands, but a terminal takes nothing that is no UTF-8.
-  for (auto at = invalid_utf8(out); at != std::string::npos; at = invalid_utf8(out)) out[at] = '?';
   return out;
 }
 

@@ -17,6 +17,17 @@ std::string folded(std::string_view text) {
   return out;
 }
 
+/// Of a whole UTF-8 character: whether it acts on the terminal in place of being shown. That are C0, DEL, C1 (U+0080
+/// to U+009F), the separators of lines and paragraphs (U+2028, U+2029) and the embeddings, overrides and isolates of
+/// bidirectional text (U+202A to U+202E, U+2066 to U+2069).
+bool is_control(std::string_view character) {
+  const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(character[k]); };
+  if (character.size() == 1) return byte(0) < 0x20 || byte(0) == 0x7f;
+  if (character.size() == 2) return byte(0) == 0xc2 && byte(1) < 0xa0;
+  if (character.size() != 3 || byte(0) != 0xe2) return false;
+  return (byte(1) == 0x80 && byte(2) >= 0xa8 && byte(2) <= 0xae) || (byte(1) == 0x81 && byte(2) >= 0xa6 && byte(2) <= 0xa9);
+}
+
 }  // namespace
 
 int edit_distance(std::string_view a, std::string_view b) {
@@ -119,6 +130,30 @@ std::size_t invalid_utf8(std::string_view text) {
     k += length;
   }
   return std::string_view::npos;
+}
+
+std::string printable(std::string_view text, std::string_view keep) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    // Up to the next byte that is no UTF-8, characters are whole.
+    const std::size_t valid = std::min(invalid_utf8(text), text.size());
+    for (std::size_t k = 0; k < valid;) {
+      const auto lead = static_cast<unsigned char>(text[k]);
+      const std::size_t length = lead < 0x80 ? 1 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : 4;
+      const std::string_view character = text.substr(k, length);
+      k += length;
+      const bool kept = length == 1 && keep.find(character[0]) != std::string_view::npos;
+      if (character == "\t" && !kept) out += ' ';
+      else if (!kept && is_control(character)) out += '?';
+      else out += character;
+    }
+    text.remove_prefix(valid);
+    if (text.empty()) break;
+    out += '?';
+    text.remove_prefix(1);
+  }
+  return out;
 }
 
 std::string_view trimmed(std::string_view text) {

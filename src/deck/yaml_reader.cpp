@@ -25,6 +25,12 @@ namespace sphgeo {
 
 namespace {
 
+/// Bytes that are no part of any text. Written as they are, a terminal would obey some of them.
+bool is_control(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return (byte < 0x20 && c != '\t' && c != '\r' && c != '\n') || byte == 0x7f;
+}
+
 /// Ends the reading after an error that was already reported.
 struct Stop {};
 
@@ -93,6 +99,12 @@ class Builder final : public YAML::EventHandler {
       found_.error("E006", node.place, {},
                    fmt::format("a value of {} characters; at most {} are allowed", value.size(),
                                limits_.text));
+      throw Stop{};
+    }
+    if (const auto control = std::find_if(value.begin(), value.end(), is_control); control != value.end()) {
+      found_.error("E002", node.place, {},
+                   fmt::format("not a text: it holds the byte {}", static_cast<int>(static_cast<unsigned char>(*control))),
+                   "leave the control character out");
       throw Stop{};
     }
     finish(std::move(node), anchor);
@@ -244,10 +256,6 @@ bool is_no_text(std::string_view text, const std::string& name, Diagnostics& fou
                 "save it as UTF-8");
     return true;
   }
-  const auto is_control = [](char c) {
-    const auto byte = static_cast<unsigned char>(c);
-    return (byte < 0x20 && c != '\t' && c != '\r' && c != '\n') || byte == 0x7f;
-  };
   const auto control = std::find_if(text.begin(), text.end(), is_control);
   if (control != text.end()) {
     const auto at = static_cast<std::size_t>(control - text.begin());
@@ -266,6 +274,29 @@ bool is_no_text(std::string_view text, const std::string& name, Diagnostics& fou
   return false;
 }
 
+/// What would take the library much memory before the builder can count its values.
+bool is_too_dense(std::string_view text, const std::string& name, const YamlLimits& limits, Diagnostics& found) {
+  std::size_t punctuation = 0;
+  int line = 1;
+  for (std::size_t start = 0; start < text.size(); ++line) {
+    const std::size_t end = std::min(text.find('\n', start), text.size());
+    if (end - start > limits.line) {
+      found.error("E006", {name, line, 1}, {}, fmt::format("a line of {} bytes; at most {} are allowed", end - start, limits.line),
+                  "break it into lines; put large tables into a CSV file");
+      return true;
+    }
+    for (std::size_t k = start; k < end; ++k) {
+      if (std::string_view("[]{},").find(text[k]) == std::string_view::npos || ++punctuation <= limits.punctuation) continue;
+      found.error("E006", {name, line, static_cast<int>(k - start) + 1}, {},
+                  fmt::format("the deck holds more than {} brackets, braces and commas", limits.punctuation),
+                  "put large tables into a CSV file");
+      return true;
+    }
+    start = end + 1;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::optional<Node> read_yaml(const std::string& text, const std::string& name, Diagnostics& found,
@@ -276,7 +307,7 @@ std::optional<Node> read_yaml(const std::string& text, const std::string& name, 
                 "put large tables into a CSV file");
     return std::nullopt;
   }
-  if (is_no_text(text, name, found)) return std::nullopt;
+  if (is_no_text(text, name, found) || is_too_dense(text, name, limits, found)) return std::nullopt;
   Builder builder(name, found, limits);
   try {
     std::istringstream in(text);

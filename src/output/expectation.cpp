@@ -7,6 +7,7 @@
 
 #include "core/csv_table.h"
 #include "core/error.h"
+#include "core/text.h"
 #include "deck/model.h"
 #include "output/reduction.h"
 #include "output/series.h"
@@ -137,7 +138,7 @@ std::string render_expectations(std::span<const ExpectResult> results) {
     out +=
         fmt::format("  {:<{}}  {:>12}  {:>12}  {:>12}  {:>12}  {}\n", r.name, width, cell(r.value),
                     cell(r.reference), cell(r.error), cell(r.tolerance), r.pass ? "pass" : "FAIL");
-    if (!r.note.empty()) out += fmt::format("  {:<{}}  ({})\n", "", width, r.note);
+    if (!r.note.empty()) out += fmt::format("  {:<{}}  ({})\n", "", width, printable(r.note));
   }
   return out;
 }

@@ -105,6 +105,20 @@ class CommandLine(unittest.TestCase):
         self.refused(2, "did you mean 'resolution'?", "check", "deck.yaml", "--set", "resolutoin=1")
         self.assertFalse((self.here / "out").exists())
 
+    def test_nothing_drives_the_terminal(self):
+        bad = "no\x1b[31m\x9b2J\u202e\udcff.yaml"   # ESC, C1, right-to-left override, a byte that is no UTF-8
+        shown = "no?[31m?2J??.yaml"
+        for words in (["check", bad], [bad], [f"--{bad}"], ["show", bad], ["check", "deck.yaml", bad], ["check", f"--{bad}", "deck.yaml"],
+                      ["check", "deck.yaml", "--set", f"title={bad}"], ["check", "deck.yaml", "--set", f"{bad}=1"],
+                      ["run", "deck.yaml", "-o", "out", f"--threads={bad}"], ["bench", "--scene", bad]):
+            said = self.refused(2, "no?[31m" if "--set" in words else shown, *words)
+            self.assertNotRegex(said, r"[\x00-\x09\x0b-\x1f\x7f-\x9f\u202e]")
+        self.refused(5, f"deck.yaml/{shown}", "run", "deck.yaml", "-q", "-o", f"deck.yaml/{bad}")
+        # A title may hold what is UTF-8 and no control character, and is still not shown as it is.
+        titled = ["check", "deck.yaml", "--no-calibrate", "--set", "title=a\x9b2J\u202eb"]
+        self.assertEqual(self.accepted(*titled).stdout.split(":")[0], "a?2J?b")
+        self.refused(2, ["--set #1: error[E002]", "the byte 27"], "check", "deck.yaml", "--set", 'title="\\e[2J"')
+
     def test_standard_input(self):
         self.accepted("check", "-", stdin=DECK)
         self.refused(2, "<stdin>:1:", "check", "-", stdin="dimension: 4\n" + DECK.split("\n", 1)[1])

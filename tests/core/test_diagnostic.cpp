@@ -40,6 +40,20 @@ TEST_SUITE("core") {
     CHECK(text.find("--set #1: error") != std::string::npos);
   }
 
+  TEST_CASE("no part of a finding can drive a terminal, and the caret stands where it belongs") {
+    Diagnostics found;
+    found.keep_source("d\x1B[2J", "\ta\xC2\x9B" "\x1B\xFF: v\x1B" "alue\xE2\x80\xAE\n");
+    found.error("E012", {"d\x1B[2J", 1, 9}, "a\x1B[31m", "unknown key 'a\nb\x07'", "did you mean '\x1B]0;x\xC3'?");
+    CHECK(found.render() ==
+          "d?[2J:1:9: error[E012]: a?[31m: unknown key 'a?b?'\n"
+          "    1 |  a???: v?alue?\n"
+          "      |        ^~~~~~~ did you mean '?]0;x?'?\n");
+    Diagnostics alone;
+    alone.error("E001", {}, "", "cannot read '\x1B[31m\xC3.yaml'", "help\x7F");
+    CHECK(alone.render() == "error[E001]: cannot read '?[31m?.yaml'\n      = help: help?\n");
+    CHECK(alone.render(true).find("\x1B[1m") == 0);  // colors of our own stay
+  }
+
   TEST_CASE("warnings are no errors") {
     Diagnostics found;
     found.warning("W030", {}, "", "odd");

@@ -77,6 +77,17 @@ TEST_SUITE("core") {
     CHECK(invalid_utf8("\xFF\xFE") == 0);
   }
 
+  TEST_CASE("nothing that a terminal obeys is printable") {
+    CHECK(printable("plain, \xC3\xA4 \xE6\xB0\xB4 \xF0\x9F\x8C\x8A") == "plain, \xC3\xA4 \xE6\xB0\xB4 \xF0\x9F\x8C\x8A");
+    CHECK(printable(std::string("a\x1B[31m\x07\x7F\r\0z", 11)) == "a?[31m????z");
+    CHECK(printable("a\tb\nc") == "a b?c");
+    CHECK(printable("a\tb\nc\x1B", "\n") == "a b\nc?");
+    CHECK(printable("\xC2\x9B" "31m \xC2\x85 \xC2\xA0") == "?31m ? \xC2\xA0");           // C1; a hard blank is none
+    CHECK(printable("\xE2\x80\xAEx\xE2\x81\xA6y\xE2\x80\xA8 \xE2\x80\x93") == "?x?y? \xE2\x80\x93");  // directions, not a dash
+    CHECK(printable("\x9B" "31m \xFF\xFE \xC3") == "?31m ?? ?");                     // no UTF-8
+    CHECK(printable("") == "");
+  }
+
   TEST_CASE("trimming drops blanks at both ends") {
     CHECK(trimmed("  a b \n") == "a b");
     CHECK(trimmed(" \t").empty());

@@ -117,6 +117,38 @@ TEST_SUITE("deck") {
     CHECK(finding("a: 1\nb: 1\nc: 1\nd: 1\n", limits) == "E006@4:1");
   }
 
+  TEST_CASE("what costs the library much memory is refused before it is read") {
+    YamlLimits limits;
+    limits.line = 20;
+    CHECK(finding("a: 1\nb: 12345678901234567\nc: 3", limits) == "findings: 0");
+    CHECK(finding("a: 1\nb: 123456789012345678\nc: 3", limits) == "E006@2:1");
+    CHECK(finding("a: 1 # a comment counts", limits) == "E006@1:1");
+    limits = {};
+    limits.punctuation = 7;
+    CHECK(finding("a: [[1], 2]\nb: [3,\n4\n", limits) == "E002@4:1");
+    CHECK(finding("a: [[1], 2]\nb: [3,\n4]\n", limits) == "E006@3:2");
+    CHECK(finding("a: [[1], 2]\nb: {\n}\n", limits) == "findings: 0");
+    CHECK(finding("a: [[1], 2]\nb: {}\nc: '},'\n", limits) == "E006@3:5");
+    // The defaults.
+    const std::string longest(YamlLimits{}.line - 3, '#');
+    CHECK(finding("a: #" + longest) == "E006@1:1");
+    CHECK(finding("\na: #" + longest.substr(1)) == "findings: 0");
+    std::string many;
+    for (int k = 0; k < 400000; ++k) many += "[\n";
+    CHECK(finding(many).substr(0, 4) == "E006");
+    CHECK(finding(many + many) == "E006@600001:1");
+  }
+
+  TEST_CASE("control characters that quoted texts spell out are refused at their place") {
+    for (const char* escape : {"\\e", "\\0", "\\a", "\\x1b", "\\x7F", "\\u0007"}) {
+      CAPTURE(escape);
+      CHECK(finding(std::string("a: 1\nb: \"x") + escape + "[31m\"\n") == "E002@2:4");
+      CHECK(finding(std::string("a: 1\n\"x") + escape + "\": 2\n") == "E002@2:1");
+    }
+    CHECK(tree("a: \"x\\ty\\n\\r\"").find("a")->value.text == "x\ty\n\r");
+    CHECK(tree("a: 'x\\e'").find("a")->value.text == "x\\e");  // no escape in single quotes
+  }
+
   TEST_CASE("other encodings than UTF-8 are named") {
     CHECK(finding("a: 1\nb: 'gr\xF6\xDF'\n") == "E002@2:7");
     CHECK(finding(std::string("\xFF\xFE" "a\0:\0", 6)) == "E002@1:1");
