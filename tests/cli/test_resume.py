@@ -18,8 +18,8 @@ import tempfile
 import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "decks"))
-from run_case import results  # noqa: E402  (what of a run folder must not differ)
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from run_folder import differing, results  # noqa: E402
 
 DONE, USAGE, IO, STOPPED = 0, 2, 5, 6
 
@@ -43,20 +43,15 @@ class Test:
 
     def same(self, out, what):
         """The results must be those of the run that nobody ended; no file may be left over."""
-        here = files(out)
-        for name in sorted(set(self.reference) | set(here)):
-            if self.reference.get(name) != here.get(name):
-                self.fail(f"{what}: {name} differs from the run in one piece" if name in here and name in self.reference
-                          else f"{what}: {name} is in one of the two folders only")
+        here = results(out)
+        for name in differing(self.reference, here):
+            self.fail(f"{what}: {name} differs from the run in one piece" if name in here and name in self.reference
+                      else f"{what}: {name} is in one of the two folders only")
 
     def fresh(self, name):
         out = self.folder / name
         shutil.rmtree(out, ignore_errors=True)
         return out
-
-
-def files(out):
-    return {k: v for k, v in results(out).items() if not k.startswith("checkpoint")}
 
 
 def steps_of(out):
@@ -182,7 +177,7 @@ def changes(t):
     two = t.fresh("extended")
     t.run(two, *short)
     t.run(two, "--resume", *longer)
-    theirs, ours = files(one), files(two)
+    theirs, ours = results(one), results(two)
     for name in ("summary.json", "run.csv"):
         if theirs[name] != ours[name]:
             t.fail(f"a run that got a later end differs from a long one in {name}")
@@ -214,7 +209,7 @@ def main():
         t = Test(args.sphgeo, args.deck, options, folder)
         whole = t.fresh("whole")
         t.run(whole)
-        t.reference = files(whole)
+        t.reference = results(whole)
         end_by_steps(t, rng)
         end_politely(t)
         damaged(t, rng)

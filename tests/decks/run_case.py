@@ -6,17 +6,16 @@ is complete and its resolved deck is a valid deck, and the results are the same 
 
 --unverified: the run is too short for what the deck expects; everything else is checked.
 """
-import csv
-import json
 import shutil
 import subprocess
 import sys
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from run_folder import differing, results  # noqa: E402
+
 THREADS = (1, 2, 4)
-# What a run says of itself that may differ from one run to the next: clocks and the machine.
-OWN = ("wall", "seconds", "per_s", "memory", "eta", "threads", "rate", "bytes")
 
 
 def call(*words):
@@ -26,27 +25,6 @@ def call(*words):
         print(" ".join(map(str, words)), f"\nexit {done.returncode}")
         print(done.stdout[-4000:], done.stderr[-4000:], sep="\n")
         sys.exit(1)
-
-
-def results(folder):
-    """Everything in the run folder that must not depend on the number of threads, by name."""
-    found = {}
-    for path in sorted(p for p in folder.rglob("*") if p.is_file()):
-        name = path.relative_to(folder).as_posix()
-        # A checkpoint holds clocks beside the state; cli/test_resume.py goes on from it and compares the results.
-        if name.startswith("checkpoint"):
-            continue
-        if name == "summary.json":
-            summary = json.loads(path.read_text())
-            found[name] = {k: summary[k] for k in ("status", "deck_hash", "particles", "steps", "time_s",
-                                                   "expect", "ledger")}
-        elif name == "run.csv":
-            with open(path, newline="") as file:
-                rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-            found[name] = [{k: v for k, v in row.items() if not any(w in k for w in OWN)} for row in rows]
-        else:
-            found[name] = path.read_bytes()
-    return found
 
 
 def check_folder(sphgeo, folder, found):
@@ -79,9 +57,7 @@ def main():
         if first is None:
             first = found
             wrong += check_folder(sphgeo, here, found)
-        for name in sorted(set(first) | set(found)):
-            if first.get(name) != found.get(name):
-                wrong.append(f"{name} differs between {THREADS[0]} and {threads} threads")
+        wrong += [f"{name} differs between {THREADS[0]} and {threads} threads" for name in differing(first, found)]
     for sentence in wrong:
         print(f"{folder}: {sentence}")
     return 1 if wrong else 0
