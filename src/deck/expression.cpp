@@ -284,6 +284,8 @@ Expression Expression::parse(const std::string& formula, const Variables& variab
   const double value = (*program)({0.0, 0.0, 0.0, 0.0});  // finds what only muparser can see
   if (used.empty()) {
     if (!std::isfinite(value)) throw FormulaError("the formula has no finite value", {}, 0);
+    // As of a number that is written out: near zero it has lost digits.
+    if (value != 0.0 && !std::isnormal(value)) throw FormulaError("the value of the formula is too small for a number in double precision", {}, 0);
     return Expression(value);
   }
   Expression e;

@@ -80,6 +80,11 @@ TEST_SUITE("deck") {
     CHECK(error_at("1)") == 1);
     CHECK(error_at("x $ 2") == 2);
     CHECK(error_at("\"a\"") == 0);
+    // A value too near to zero could not be written out as a number that is read back.
+    CHECK(error_at("1e-300*1e-8") == 0);
+    CHECK(error_at("1e-300*1e-7") == -1);
+    CHECK(value_of("1e-300*1e-300") == 0.0);
+    CHECK(error_at("x*1e-300*1e-8") == -1);  // not a constant
     for (const char* bad : {"sqrt(-1)", "1/0", "sqrt(1, 2)", "min()", "1 +", "*2", "x y", "L(2)",
                             "sin", "()", "1:2", "1e999", "_pi", "rnd()"}) {
       CAPTURE(bad);

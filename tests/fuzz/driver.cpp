@@ -3,7 +3,7 @@
 //   sphgeo_fuzz TARGET [--seconds S] [--runs N] [--seed K] [--corpus DIR] [--keep DIR]
 //   sphgeo_fuzz TARGET FILE...          these inputs only
 //
-// Ends after N mutations or S seconds, whichever comes first. A crash, an input that takes longer than
+// Ends after N mutations or S seconds, whichever comes first; SPHGEO_FUZZ_SECONDS sets S and lifts N. A crash, an input that takes longer than
 // 10 s, more than 3 GiB of memory, or an exception that escapes is a finding: its input goes to a file
 // in DIR (default: here) and the exit code is 1.
 
@@ -102,7 +102,8 @@ struct Options {
 
 Options parse(int argc, char** argv) {
   Options o;
-  if (const char* asked = std::getenv("SPHGEO_FUZZ_SECONDS")) o.seconds = std::atof(asked);
+  const char* asked = std::getenv("SPHGEO_FUZZ_SECONDS");
+  if (asked != nullptr) o.seconds = std::atof(asked);
   for (int k = 2; k < argc; ++k) {
     const std::string word = argv[k];
     if (!word.starts_with("--")) {
@@ -110,8 +111,8 @@ Options parse(int argc, char** argv) {
       continue;
     }
     const std::string value = ++k < argc ? argv[k] : "";
-    if (word == "--seconds" && std::getenv("SPHGEO_FUZZ_SECONDS") == nullptr) o.seconds = std::atof(value.c_str());
-    if (word == "--runs") o.runs = std::strtoull(value.c_str(), nullptr, 10);
+    if (word == "--seconds" && asked == nullptr) o.seconds = std::atof(value.c_str());
+    if (word == "--runs" && asked == nullptr) o.runs = std::strtoull(value.c_str(), nullptr, 10);
     if (word == "--seed") o.seed = std::strtoull(value.c_str(), nullptr, 10);
     if (word == "--corpus") o.corpus = value;
     if (word == "--keep") o.keep = value;
