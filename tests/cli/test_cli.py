@@ -7,18 +7,11 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
-import unittest
 from pathlib import Path
 
-SPHGEO = None
-DECK = """\
-dimension: 2
-resolution: 0.1 m
-end_time: 1 ms
-materials: [{name: water, type: water, sound_speed: 10}]
-bodies: [{name: drop, material: water, shape: {type: box, min: [0, 0, 0], max: [0.4, 1, 0.4]}}]
-"""
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from program import DECK, ProgramTest, main  # noqa: E402
+
 MISSED = """\
 probes: [{name: energy, type: energy}]
 expect:
@@ -26,18 +19,13 @@ expect:
 """
 
 
-class CommandLine(unittest.TestCase):
+class CommandLine(ProgramTest):
     def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.here = Path(self.folder.name)
-        (self.here / "deck.yaml").write_text(DECK)
-
-    def tearDown(self):
-        self.folder.cleanup()
+        super().setUp()
+        self.write("deck.yaml", DECK)
 
     def call(self, *words, stdin=""):
-        return subprocess.run([SPHGEO, *words], input=stdin, capture_output=True, text=True, timeout=60,
-                              cwd=self.here, env={**os.environ, "NO_COLOR": "1"})
+        return super().call(*words, input=stdin, text=True)
 
     def refused(self, code, says, *words, stdin=""):
         """The call ends with this code, says each of these on stderr, and prints no data."""
@@ -47,11 +35,6 @@ class CommandLine(unittest.TestCase):
             self.assertIn(text, done.stderr)
         self.assertEqual(done.stdout, "")
         return done.stderr
-
-    def accepted(self, *words, stdin=""):
-        done = self.call(*words, stdin=stdin)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done
 
     def test_commands(self):
         self.refused(2, ["a command is missing", "sphgeo --help"])
@@ -187,11 +170,10 @@ class CommandLine(unittest.TestCase):
             self.skipTest("no /dev/full")
         for command in ("schema", "list", "reference"):
             with open("/dev/full", "w") as full:
-                done = subprocess.run([SPHGEO, command], stdout=full, stderr=subprocess.PIPE, text=True)
+                done = subprocess.run([self.sphgeo, command], stdout=full, stderr=subprocess.PIPE, text=True)
             self.assertEqual(done.returncode, 5, command)
             self.assertIn("standard output", done.stderr)
 
 
 if __name__ == "__main__":
-    SPHGEO = str(Path(sys.argv.pop(1)).resolve())
-    unittest.main(verbosity=0)
+    main()

@@ -50,8 +50,7 @@ class Faults(unittest.TestCase):
 
     @classmethod
     def run_deck(cls, folder, *words, fault=None, log=False):
-        env = {**os.environ, "LD_PRELOAD": SHIM, "NO_COLOR": "1", "SPHGEO_FAULT_FOLDER": str(folder),
-               "OMP_NUM_THREADS": "1"}
+        env = {**os.environ, "LD_PRELOAD": SHIM, "NO_COLOR": "1", "SPHGEO_FAULT_FOLDER": str(folder)}
         if fault:
             env["SPHGEO_FAULT"] = fault
         if log:

@@ -10,20 +10,12 @@ import resource
 import shutil
 import subprocess
 import sys
-import tempfile
 import time
-import unittest
 from pathlib import Path
 
-SPHGEO = None
-ROOT = Path(__file__).resolve().parents[2]
-DECK = """\
-dimension: 2
-resolution: 0.1 m
-end_time: 1 ms
-materials: [{name: water, type: water, sound_speed: 10}]
-bodies: [{name: drop, material: water, shape: {type: box, min: [0, 0, 0], max: [0.4, 1, 0.4]}}]
-"""
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from program import DECK, ROOT, ProgramTest, main  # noqa: E402
+
 HEAD = DECK.rsplit("bodies", 1)[0]
 MEMORY = 800 << 20
 SECONDS = 20   # a bound for hangs, not a measure of speed
@@ -33,24 +25,9 @@ def limit_memory():
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
 
 
-class Inputs(unittest.TestCase):
-    def setUp(self):
-        self.temporary = tempfile.TemporaryDirectory(prefix="sphgeo inputs ")
-        self.here = Path(self.temporary.name)
-
-    def tearDown(self):
-        self.temporary.cleanup()
-
-    def write(self, name, text):
-        path = self.here / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(text if isinstance(text, bytes) else text.encode())
-        return name
-
+class Inputs(ProgramTest):
     def call(self, *words, **options):
-        options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
-        env = {**os.environ, "NO_COLOR": "1", "OMP_NUM_THREADS": "2", **options.pop("env", {})}
-        return subprocess.run([SPHGEO, *words], cwd=self.here, timeout=60, env=env, preexec_fn=limit_memory, **options)
+        return super().call(*words, preexec_fn=limit_memory, **options)
 
     def refused(self, says, deck, *words):
         """Exit 2 within bounds; stderr holds each of the texts, on few and short lines."""
@@ -63,11 +40,6 @@ class Inputs(unittest.TestCase):
             self.assertIn(text, said[:20000])
         self.assertLess(len(said), 30000)
         return said
-
-    def accepted(self, *words, **options):
-        done = self.call(*words, **options)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done
 
     # --- files that a deck names
 
@@ -221,7 +193,7 @@ class Inputs(unittest.TestCase):
                 self.assertEqual(done.returncode, 5, done.stderr)
                 self.assertIn(b"Broken pipe", done.stderr)
             with self.subTest(words=words, stream="closed"):
-                done = subprocess.run(["/bin/sh", "-c", 'exec "$@" >&-', "sh", SPHGEO, *words], cwd=self.here,
+                done = subprocess.run(["/bin/sh", "-c", 'exec "$@" >&-', "sh", self.sphgeo, *words], cwd=self.here,
                                       stderr=subprocess.PIPE, timeout=60)
                 self.assertEqual(done.returncode, 5, done.stderr)
                 self.assertIn(b"Bad file descriptor", done.stderr)
@@ -238,12 +210,11 @@ class Inputs(unittest.TestCase):
         done = self.call("run", "deck.yaml", "-o", "out", stderr=write)
         os.close(write)
         self.assertEqual(done.returncode, 0)
-        done = subprocess.run(["/bin/sh", "-c", 'exec "$@" 0<&- >&- 2>&-', "sh", SPHGEO, "run", "deck.yaml", "-o", "none"],
+        done = subprocess.run(["/bin/sh", "-c", 'exec "$@" 0<&- >&- 2>&-', "sh", self.sphgeo, "run", "deck.yaml", "-o", "none"],
                               cwd=self.here, timeout=60)
         self.assertEqual(done.returncode, 0)
         self.assertTrue((self.here / "none/run.csv").read_text().startswith("# sphgeo"))
 
 
 if __name__ == "__main__":
-    SPHGEO = str(Path(sys.argv.pop(1)).resolve())
-    unittest.main(verbosity=0)
+    main()
