@@ -10,7 +10,6 @@ import resource
 import shutil
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
@@ -18,22 +17,21 @@ from program import DECK, ROOT, ProgramTest, main  # noqa: E402
 
 HEAD = DECK.rsplit("bodies", 1)[0]
 MEMORY = 800 << 20
-SECONDS = 20   # a bound for hangs, not a measure of speed
+SECONDS = 20   # of processor time: a bound for hangs that other work on the machine does not reach
 
 
-def limit_memory():
+def limit():
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS))
 
 
 class Inputs(ProgramTest):
     def call(self, *words, **options):
-        return super().call(*words, preexec_fn=limit_memory, **options)
+        return super().call(*words, preexec_fn=limit, timeout=250, **options)
 
     def refused(self, says, deck, *words):
         """Exit 2 within bounds; stderr holds each of the texts, on few and short lines."""
-        start = time.monotonic()
         done = self.call("check", deck, *words)
-        self.assertLess(time.monotonic() - start, SECONDS)
         said = done.stderr.decode()
         self.assertEqual(done.returncode, 2, said[:2000])
         for text in [says] if isinstance(says, str) else says:
@@ -162,9 +160,7 @@ class Inputs(ProgramTest):
                 self.refused(["error[E", says], name + ".yaml")
         many = "variables: {" + ", ".join(f"v{k}: {'v%d + 1' % (k - 1) if k else 1}" for k in range(4900)) + "}\n"
         self.write("many.yaml", DECK + many)
-        start = time.monotonic()
         self.accepted("check", "many.yaml")
-        self.assertLess(time.monotonic() - start, SECONDS)
 
     def test_scenes_beyond_any_machine(self):
         for change in ("resolution=1e-9", "resolution=1e-200", "bodies.drop.shape.max=[1e12, 1, 1e-3]"):
