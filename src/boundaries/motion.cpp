@@ -40,8 +40,8 @@ Schema<Motion> Motion::schema() {
   s.optional("from", &Motion::from, unit::time, "the boundary rests before this time");
   s.optional("until", &Motion::until, unit::time, "the boundary rests after this time");
   s.check([](Motion& m, CheckContext& c) {
-    if (!(m.axis.norm() > 0)) c.error("axis", "the axis has no direction", "give a vector that is not zero");
-    else m.axis.normalize();
+    m.axis = direction_of(m.axis);
+    if (m.axis.isZero(0)) c.error("axis", "the axis has no direction", "give a vector that is not zero");
     if (m.until && !(*m.until > m.from)) c.error("until", "the motion ends before it begins", "until must be later than from");
     if (!m.table) return;
     try {

@@ -2,6 +2,7 @@
 // Hashes: random numbers that depend on a seed and an index only (not on order or threads), and a
 // checksum of bytes.
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -45,7 +46,8 @@ constexpr std::uint64_t fnv1a(std::string_view text, std::uint64_t state = fnv1a
   return state;
 }
 
-/// Checksum of a large array, several bytes a cycle: FNV-1a over 64-bit words in four streams. Each
+/// Checksum of a large array, several bytes a cycle: FNV-1a over 64-bit words in four streams, turned after each
+/// product: that carries a change only upwards, so that two flipped signs would undo each other at the top. Each
 /// step is a bijection, so any change of a single word changes the result.
 inline std::uint64_t checksum(const void* data, std::size_t bytes) {
   const auto* p = static_cast<const unsigned char*>(data);
@@ -55,7 +57,7 @@ inline std::uint64_t checksum(const void* data, std::size_t bytes) {
     for (std::size_t s = 0; s < 4; ++s) {
       std::uint64_t word;
       std::memcpy(&word, p + k + 8 * s, sizeof word);
-      stream[s] = (stream[s] ^ word) * 0x100000001b3u;
+      stream[s] = std::rotl((stream[s] ^ word) * 0x100000001b3u, 29);
     }
   std::uint64_t sum = fnv1a_bytes(p + k, bytes - k, bytes);
   for (const std::uint64_t s : stream) sum = mix_bits(sum ^ s);

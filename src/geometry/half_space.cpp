@@ -14,7 +14,7 @@ Schema<HalfSpace> HalfSpace::schema() {
   s.optional("normal", &HalfSpace::normal, unit::none, "Points out of the solid; any length.");
   s.check([](HalfSpace& h, CheckContext& c) {
     set_scene(h, c);
-    if (h.normal.norm() == 0.0)
+    if (h.normal.isZero(0))
       c.error("normal", "the normal has no direction",
               h.flat ? "in 2D give its x and z components" : "give a vector such as [0, 0, 1]");
     else

@@ -107,7 +107,7 @@ struct HalfSpace final : SceneShape {
   Vec3 point = Vec3::Zero();
   Vec3 normal = Vec3::UnitZ();  ///< outward, any length
   static Schema<HalfSpace> schema();
-  void prepare() { unit_ = normal.normalized(); }
+  void prepare() { unit_ = direction_of(normal); }
   double signed_distance(const Vec3& at) const override { return (at - point).dot(unit_); }
   Aabb box() const override;
 

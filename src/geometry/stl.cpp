@@ -62,7 +62,7 @@ Schema<Stl> Stl::schema() {
       .at_least(0);
   s.check([](Stl& b, CheckContext& c) {
     set_scene(b, c);
-    if (b.axis.norm() == 0.0) return c.error("axis", "the axis has no direction");
+    if (b.axis.isZero(0)) return c.error("axis", "the axis has no direction");
     prepare_or_report(b, c, "file");
   });
   return s;
@@ -71,7 +71,7 @@ Schema<Stl> Stl::schema() {
 void Stl::prepare() {
   Triangles mesh = read_stl(file.path);
   const Mat3 turn = rotate == 0.0 ? Mat3(Mat3::Identity())
-                                  : Eigen::AngleAxisd(rotate, axis.normalized()).toRotationMatrix();
+                                  : Eigen::AngleAxisd(rotate, direction_of(axis)).toRotationMatrix();
   Aabb around;
   for (Vec3& p : mesh.points) {
     p = turn * (scale * p) + translate;

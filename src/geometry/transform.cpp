@@ -27,7 +27,7 @@ Schema<Transform> Transform::schema() {
     if (t.flat && t.rotate != 0.0 && (t.axis.x() != 0.0 || t.axis.z() != 0.0))
       return c.error("axis", "in 2D the axis of rotation is along y",
                      "write [0, -1, 0] (counter-clockwise) or leave it out");
-    if (t.axis.norm() == 0.0) return c.error("axis", "the axis has no direction");
+    if (t.axis.isZero(0)) return c.error("axis", "the axis has no direction");
     t.prepare();
   });
   return s;
@@ -35,7 +35,7 @@ Schema<Transform> Transform::schema() {
 
 void Transform::prepare() {
   turn_ = rotate == 0.0 ? Mat3(Mat3::Identity())
-                        : Eigen::AngleAxisd(rotate, axis.normalized()).toRotationMatrix();
+                        : Eigen::AngleAxisd(rotate, direction_of(axis)).toRotationMatrix();
 }
 
 Aabb Transform::box() const {

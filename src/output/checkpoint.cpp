@@ -17,7 +17,7 @@
 namespace sphgeo {
 namespace {
 
-constexpr std::string_view mark = "\nsphgeo checkpoint 1 ";  // with the version of the layout
+constexpr std::string_view mark = "\nsphgeo checkpoint 2 ";  // with the version of the layout
 constexpr std::size_t trailer_bytes = 72;                     // the mark, two numbers of 16 digits, padding
 
 /// The line behind the data.

@@ -112,6 +112,14 @@ TEST_SUITE("output") {
     }
     // The padding behind the checksum means nothing, but is compared like the rest.
     CHECK(missed == 0);
+    // Two flipped signs, of numbers near to each other.
+    for (std::size_t at = 1031; at + 96 < whole.size(); at += 8)
+      for (const std::size_t apart : {8, 32, 64}) {
+        std::string bad = whole;
+        bad[at] ^= static_cast<char>(0x80);
+        bad[at + apart] ^= static_cast<char>(0x80);
+        CHECK_THROWS_AS(CheckpointReader(bad, "bad"), IoError);
+      }
     for (std::uint64_t k = 0; k < 200; ++k)
       CHECK_THROWS_AS(CheckpointReader(whole.substr(0, random_bits(3, k) % whole.size()), "cut"), IoError);
     CHECK_THROWS_AS(CheckpointReader("", "empty"), IoError);

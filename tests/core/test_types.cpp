@@ -1,0 +1,21 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "core/types.h"
+
+using namespace sphgeo;
+
+TEST_SUITE("core") {
+  TEST_CASE("directions are unit vectors for lengths of every size") {
+    CHECK(direction_of({0, 2, 0}) == Vec3(0, 1, 0));
+    CHECK(direction_of({0, 0, 0}) == Vec3(0, 0, 0));
+    CHECK(direction_of({1, -2, 3}) == Vec3(1, -2, 3).normalized());
+    for (const double size : {1e300, 1e200, 1e-160, 1e-200, 1e-320}) {
+      CAPTURE(size);
+      CHECK((direction_of({-size, 0, 0}) - Vec3(-1, 0, 0)).norm() == 0);
+      CHECK((direction_of({size, 0, size}) - Vec3(1, 0, 1) / std::sqrt(2.0)).norm() < 1e-15);
+    }
+    CHECK((direction_of({-1e300, 1, 0}) - Vec3(-1, 0, 0)).norm() < 1e-15);
+  }
+}
