@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/csv_table.h"
+#include "core/direction.h"
 
 namespace sphgeo {
 namespace {

@@ -4,7 +4,6 @@
 // z is up in both, and Vec<2> holds (x, z).
 
 #include <Eigen/Core>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -32,13 +31,6 @@ template <int Dim>
 Vec3 to_space(const Vec<Dim>& a) {
   if constexpr (Dim == 2) return {a[0], 0.0, a[1]};
   else return a;
-}
-
-/// The unit vector along `a`, also where the square of its length is no number in double precision; zero for zero.
-inline Vec3 direction_of(const Vec3& a) {
-  const double largest = a.cwiseAbs().maxCoeff();
-  if (!(largest > 0)) return Vec3::Zero();
-  return std::isnormal(a.squaredNorm()) ? Vec3(a.normalized()) : Vec3((a / largest).normalized());
 }
 
 /// Axis-aligned box, SI metres. Components may be infinite.

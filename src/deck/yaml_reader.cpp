@@ -107,6 +107,13 @@ class Builder final : public YAML::EventHandler {
                    "leave the control character out");
       throw Stop{};
     }
+    // The library turns `\N` and `\_` into single bytes.
+    if (const std::size_t at = invalid_utf8(value); at != std::string::npos) {
+      found_.error("E002", node.place, {},
+                   fmt::format("not a text: it holds the byte 0x{:02X}, which is no UTF-8", static_cast<unsigned char>(value[at])),
+                   "write \\u0085 in place of \\N and \\u00a0 in place of \\_");
+      throw Stop{};
+    }
     finish(std::move(node), anchor);
   }
 

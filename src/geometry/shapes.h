@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/direction.h"
 #include "deck/interfaces.h"
 #include "deck/schema.h"
 #include "geometry/bvh.h"

@@ -145,6 +145,11 @@ TEST_SUITE("deck") {
       CHECK(finding(std::string("a: 1\nb: \"x") + escape + "[31m\"\n") == "E002@2:4");
       CHECK(finding(std::string("a: 1\n\"x") + escape + "\": 2\n") == "E002@2:1");
     }
+    for (const char* escape : {"\\N", "\\_"}) {  // no UTF-8, as the library reads them
+      CAPTURE(escape);
+      CHECK(finding(std::string("a: 1\nb: \"x") + escape + "\"\n") == "E002@2:4");
+    }
+    CHECK(tree("a: \"\\u00a0\\L\"").find("a")->value.text == "\xC2\xA0\xE2\x80\xA8");
     CHECK(tree("a: \"x\\ty\\n\\r\"").find("a")->value.text == "x\ty\n\r");
     CHECK(tree("a: 'x\\e'").find("a")->value.text == "x\\e");  // no escape in single quotes
   }

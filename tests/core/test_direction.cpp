@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "core/types.h"
+#include "core/direction.h"
+#include "core/hash.h"
 
 using namespace sphgeo;
 
@@ -15,6 +16,10 @@ TEST_SUITE("core") {
       CAPTURE(size);
       CHECK((direction_of({-size, 0, 0}) - Vec3(-1, 0, 0)).norm() == 0);
       CHECK((direction_of({size, 0, size}) - Vec3(1, 0, 1) / std::sqrt(2.0)).norm() < 1e-15);
+    }
+    for (std::uint64_t k = 0; k < 2000; ++k) {
+      const Vec3 once = direction_of(Vec3(random_uniform(1, k), random_uniform(2, k), random_uniform(3, k)) - Vec3::Constant(0.5));
+      CHECK(direction_of(once) == once);
     }
     CHECK((direction_of({-1e300, 1, 0}) - Vec3(-1, 0, 0)).norm() < 1e-15);
   }
