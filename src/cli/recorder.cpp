@@ -25,6 +25,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 // What a frame of a set shows when the deck names no fields.
 std::vector<std::string> usual_fields(const std::string& set) {
   if (set == "water") return {"velocity", "pressure", "density", "surface", "part"};
+  if (set == "soil") return {"velocity", "stress", "pressure", "plastic_strain", "volume_fraction", "part"};
   return {"velocity", "normal", "part"};
 }
 
@@ -33,8 +34,8 @@ std::uint64_t bytes_at(const StateSource& source, const std::string& series) {
   return static_cast<std::uint64_t>(source.count(series + "/bytes"));
 }
 
-std::vector<Column> run_columns() {
-  return {{"advection_steps", "1", "advection steps so far"},
+std::vector<Column> run_columns(bool soil) {
+  std::vector<Column> columns{{"advection_steps", "1", "advection steps so far"},
           {"acoustic_steps", "1", "acoustic steps so far"},
           {"dt_advection", "s", "last advection step"},
           {"dt_acoustic", "s", "last acoustic step"},
@@ -43,14 +44,20 @@ std::vector<Column> run_columns() {
           {"max_speed", "m/s", "largest speed"},
           {"min_density", "kg/m3", "smallest density of the water"},
           {"max_density", "kg/m3", "largest density of the water"},
-          {"mass", "kg", "mass of the water (per metre of depth in 2D)"},
-          {"momentum_x", "kg m/s", "momentum of the water"},
-          {"momentum_y", "kg m/s", "momentum of the water"},
-          {"momentum_z", "kg m/s", "momentum of the water"},
+          {"mass", "kg", "mass of all that moves (per metre of depth in 2D)"},
+          {"momentum_x", "kg m/s", "momentum of all that moves"},
+          {"momentum_y", "kg m/s", "momentum of all that moves"},
+          {"momentum_z", "kg m/s", "momentum of all that moves"},
           {"kinetic", "J", "kinetic energy"},
           {"potential", "J", "potential energy"},
-          {"internal", "J", "energy of compression"},
+          {"internal", "J", "energy of compression of water, elastic energy of soil"},
           {"wall_seconds", "s", "wall time since the start"}};
+  if (soil) {
+    columns.push_back({"dissipated", "J", "energy dissipated by plastic flow of the soil"});
+    columns.push_back({"min_volume_fraction", "1", "smallest volume fraction of the soil"});
+    columns.push_back({"max_volume_fraction", "1", "largest volume fraction of the soil"});
+  }
+  return columns;
 }
 
 }  // namespace
@@ -70,13 +77,14 @@ std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& 
       for (const auto& asked = model.output.frames.fields; const std::string& f : asked.empty() ? usual_fields(set) : asked)
         wishes.push_back({set, f, "frames", asked.empty()});
   if (present("water")) wishes.push_back({"water", "pressure", "run.csv"});
+  if (present("soil")) wishes.push_back({"soil", "volume", "run.csv"});
   return wishes;
 }
 
 template <int Dim>
 Recorder<Dim>::Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder, const StateSource* resume)
     : world_(world), plan_(plan), folder_(folder), frames_(world.model().frame_interval()),
-      rows_(world.model().run_interval()), run_("run", run_columns()) {
+      rows_(world.model().run_interval()), run_("run", run_columns(world.find("soil") != nullptr)) {
   const Model& model = world.model();
   if (resume) run_.resume(folder.run_csv(), bytes_at(*resume, "output/run"));
   else run_.write_to(folder.run_csv());
@@ -181,23 +189,44 @@ void Recorder<Dim>::sample_probe(ProbeRun& p) {
 }
 
 template <int Dim>
+void Recorder<Dim>::add_soil_totals(const ParticleSet<Dim>& soil, Totals& sum) const {
+  const WorldView<Dim> view(world_);
+  const Energies e = soil_energies(view);
+  const auto& m = soil.scalar(fields::mass);
+  const auto& v = soil.vector(fields::velocity);
+  const auto& fraction = soil.scalar(fields::volume_fraction);
+  const Index n = soil.size();
+  sum.kinetic += e.kinetic;
+  sum.potential += e.potential;
+  sum.internal += e.internal;
+  sum.dissipated = dissipated_energy(view);
+  sum.mass += ordered_sum(n, [&](Index i) { return m[i]; });
+  const Vec3 momentum = to_space<Dim>(ordered_sum(n, [&](Index i) -> Vec<Dim> { return m[i] * v[i]; }));
+  sum.momentum = {momentum.x(), momentum.y(), momentum.z()};
+  sum.max_speed = std::sqrt(block_max(n, [&](Index i) { return v[i].squaredNorm(); }, 0.0));
+  sum.min_fraction = block_min(n, [&](Index i) { return fraction[i]; });
+  sum.max_fraction = block_max(n, [&](Index i) { return fraction[i]; });
+}
+
+template <int Dim>
 typename Recorder<Dim>::Totals Recorder<Dim>::totals() const {
   Totals sum;
   sum.time = world_.clock.time;
   const ParticleSet<Dim>* water = world_.find("water");
+  if (const ParticleSet<Dim>* soil = world_.find("soil")) add_soil_totals(*soil, sum);
   if (!water) return sum;
   const auto& m = water->scalar(fields::mass);
   const auto& rho = water->scalar(fields::density);
   const auto& v = water->vector(fields::velocity);
   const Index n = water->size();
   const Energies e = water_energies(WorldView<Dim>(world_));
-  sum.kinetic = e.kinetic;
-  sum.potential = e.potential;
-  sum.internal = e.internal;
-  sum.mass = ordered_sum(n, [&](Index i) { return m[i]; });
+  sum.kinetic += e.kinetic;
+  sum.potential += e.potential;
+  sum.internal += e.internal;
+  sum.mass += ordered_sum(n, [&](Index i) { return m[i]; });
   const Vec3 momentum = to_space<Dim>(ordered_sum(n, [&](Index i) -> Vec<Dim> { return m[i] * v[i]; }));
-  sum.momentum = {momentum.x(), momentum.y(), momentum.z()};
-  sum.max_speed = std::sqrt(block_max(n, [&](Index i) { return v[i].squaredNorm(); }, 0.0));
+  for (std::size_t k = 0; k < 3; ++k) sum.momentum[k] += momentum[static_cast<Index>(k)];
+  sum.max_speed = std::max(sum.max_speed, std::sqrt(block_max(n, [&](Index i) { return v[i].squaredNorm(); }, 0.0)));
   sum.min_density = block_min(n, [&](Index i) { return rho[i]; });
   sum.max_density = block_max(n, [&](Index i) { return rho[i]; });
   return sum;
@@ -216,8 +245,9 @@ void Recorder<Dim>::sample_run(double wall_seconds) {
   const double row[] = {static_cast<double>(c.advection_steps), static_cast<double>(c.acoustic_steps),
                         c.dt_advection, c.dt_acoustic, static_cast<double>(particles), static_cast<double>(lost),
                         t.max_speed, t.min_density, t.max_density, t.mass, t.momentum[0], t.momentum[1],
-                        t.momentum[2], t.kinetic, t.potential, t.internal, wall_seconds};
-  run_.add(c.time, row);
+                        t.momentum[2], t.kinetic, t.potential, t.internal, wall_seconds,
+                        t.dissipated, t.min_fraction, t.max_fraction};
+  run_.add(c.time, std::span<const double>(row).first(run_.columns().size()));
 }
 
 template <int Dim>
@@ -255,6 +285,8 @@ void Recorder<Dim>::write_set(const ParticleSet<Dim>& set) {
       columns.push_back({name, spec.unit.symbol, 1, std::span<const double>(set.scalar(spec).data(), n)});
     else if (spec.type == FieldType::tag)
       columns.push_back({name, "", 1, std::span<const std::int32_t>(set.tag(spec).data(), n)});
+    else if (spec.type == FieldType::tensor)
+      columns.push_back({name, spec.unit.symbol, 6, std::span<const double>(set.tensor(spec).data()->data(), 6 * n)});
     else if (spec.type == FieldType::vector) {
       auto& flat = vectors.emplace_back();
       flat.reserve(3 * n);
@@ -333,9 +365,11 @@ std::vector<LedgerRow> Recorder<Dim>::ledger() const {
   const double energy_scale = std::max({std::abs(energy_a), a.kinetic, b.kinetic});
   const auto vec = [](const std::array<double, 3>& v) { return Vec3(v[0], v[1], v[2]); };
   const auto list = [](const std::array<double, 3>& v) { return std::vector<double>(v.begin(), v.end()); };
-  return {{"mass", "kg", {a.mass}, {b.mass}, {}, relative(b.mass - a.mass, a.mass)},
+  std::vector<LedgerRow> rows{{"mass", "kg", {a.mass}, {b.mass}, {}, relative(b.mass - a.mass, a.mass)},
           {"momentum", "kg m/s", list(a.momentum), list(b.momentum), {}, relative((vec(b.momentum) - vec(a.momentum)).norm(), a.mass * speed)},
           {"energy", "J", {energy_a}, {energy_b}, {}, relative(energy_b - energy_a, energy_scale)}};
+  if (world_.find("soil")) rows.push_back({"dissipated", "J", {a.dissipated}, {b.dissipated}, {}, relative(b.dissipated - a.dissipated, energy_scale)});
+  return rows;
 }
 
 template class Recorder<2>;

@@ -71,6 +71,7 @@ class Recorder {
     double mass = 0, kinetic = 0, potential = 0, internal = 0;
     std::array<double, 3> momentum{};
     double max_speed = 0, min_density = 0, max_density = 0;
+    double dissipated = 0, min_fraction = 0, max_fraction = 0;  ///< of soil
   };
   using TotalsArray = std::array<double, sizeof(Totals) / sizeof(double)>;
 
@@ -78,6 +79,7 @@ class Recorder {
   void sample_probe(ProbeRun& p);
   void sample_run(double wall_seconds);
   Totals totals() const;
+  void add_soil_totals(const ParticleSet<Dim>& soil, Totals& sum) const;
   void write_set(const ParticleSet<Dim>& set);
   void write_boundaries();
   std::vector<std::string> frame_fields(const ParticleSet<Dim>& set) const;

@@ -21,11 +21,40 @@ Schema<Body> Body::schema() {
       .only_of("xyz");
   s.optional("level", &Body::level, unit::length,
              "z of the free surface for hydrostatic pressure; auto: the top of the body");
+  s.optional("stress", &Body::stress, unit::none,
+             "initial stress of soil: zero, or geostatic: the weight of what lies above, up to 'level'")
+      .choices({"zero", "geostatic"});
+  s.optional("stress_tensor", &Body::stress_tensor, unit::pressure,
+             "initial stress of soil, formulas of x, y, z: xx, yy, zz, xy, yz, xz; tension is positive")
+      .items(6, 6)
+      .only_of("xyz");
+  s.optional("lateral_stress_ratio", &Body::lateral_stress_ratio, unit::none,
+             "horizontal over vertical geostatic stress, K0; auto: 1 - sin phi, or nu / (1 - nu) of an "
+             "elastic soil")
+      .at_least(0);
+  s.optional("volume_fraction", &Body::volume_fraction, unit::none,
+             "initial volume fraction of soil, a number or a formula of x, y, z; auto: the material's")
+      .only_of("xyz")
+      .equation("Eq. 1");
+  s.optional("porosity", &Body::porosity, unit::none,
+             "initial porosity of soil, 1 - volume_fraction, instead of it")
+      .only_of("xyz")
+      .equation("Eq. 1");
+  s.optional("saturation", &Body::saturation, unit::none,
+             "initial degree of saturation of soil; it matters only with a saturated_cohesion")
+      .only_of("xyz")
+      .equation("Eq. 108");
   s.check([](Body& b, CheckContext& c) {
-    if (b.level && b.pressure.word != "hydrostatic") {
+    if (b.level && b.pressure.word != "hydrostatic" && b.stress != "geostatic") {
       c.error("level", "'level' has no meaning unless pressure is hydrostatic",
-              "set pressure: hydrostatic, or leave 'level' out");
+              "set pressure: hydrostatic (of water) or stress: geostatic (of soil), or leave 'level' out");
     }
+    if (b.stress_tensor && b.stress != "zero")
+      c.error("stress_tensor", "the initial stress is given twice", "give stress or stress_tensor, not both");
+    if (b.lateral_stress_ratio && b.stress != "geostatic")
+      c.error("lateral_stress_ratio", "'lateral_stress_ratio' has no meaning unless stress is geostatic");
+    if (b.volume_fraction && b.porosity)
+      c.error("porosity", "the volume fraction is given twice", "give volume_fraction or porosity, not both");
   });
   return s;
 }
@@ -73,6 +102,30 @@ Schema<Numerics> Numerics::schema() {
              "smoothing length of water in spacings; auto: 1.8")
       .at_least(1)
       .at_most(3);
+  s.optional("h_factor_soil", &Numerics::h_factor_soil, unit::none,
+             "smoothing length of soil in spacings; auto: 1.3")
+      .at_least(1)
+      .at_most(3);
+  s.optional("limiter_soil", &Numerics::limiter_soil, unit::none,
+             "factor of the low-dissipation limiter of soil's Riemann flux; auto: 20 times the dimension")
+      .at_least(0)
+      .equation("Eq. 54");
+  s.optional("soil_pair_geometry", &Numerics::soil_pair_geometry, unit::none,
+             "positions used in pair sums of soil within an advection step; frozen ones let a turning "
+             "body shrink, which a stress that follows from rates never forgets")
+      .choices({"frozen", "current"});
+  s.optional("soil_velocity_gradient", &Numerics::soil_velocity_gradient, unit::none,
+             "corrected: exact for linear velocities also at surfaces; plain: the bare sum")
+      .choices({"corrected", "plain"})
+      .equation("Eq. 55");
+  s.optional("volume_fraction_reinitialization", &Numerics::volume_fraction_reinitialization, unit::none,
+             "summation: volume fraction of soil from the sum over neighbors at each advection step; none: "
+             "never")
+      .choices({"summation", "none"});
+  s.optional("transport_velocity_soil", &Numerics::transport_velocity_soil, unit::none,
+             "whether inner soil particles are shifted to an even spacing: for cohesive soil, against "
+             "tensile instability")
+      .equation("Eq. 87");
   s.optional("max_lost_fraction", &Numerics::max_lost_fraction, unit::none,
              "the run stops when more than this fraction of a set has left the domain or sits inside a "
              "wall")

@@ -25,6 +25,12 @@ struct Body {
   std::array<Expression, 3> velocity;     ///< initial, m/s
   WordOrExpression pressure{"zero", {}};  ///< initial: zero | hydrostatic | a formula (Pa)
   std::optional<double> level;  ///< z of the free surface for hydrostatic; empty: the body's top
+  std::string stress = "zero";  ///< of soil, initial: zero | geostatic
+  std::optional<std::vector<Expression>> stress_tensor;  ///< of soil, initial: xx, yy, zz, xy, yz, xz, Pa
+  std::optional<double> lateral_stress_ratio;  ///< K0 of geostatic stress; empty: from the material
+  std::optional<Expression> volume_fraction;   ///< of soil, initial; empty: the material's
+  std::optional<Expression> porosity;          ///< 1 - volume_fraction, instead of it
+  Expression saturation;                       ///< of soil, initial degree of saturation
   static Schema<Body> schema();
 };
 
@@ -41,6 +47,12 @@ struct Numerics {
   bool transport_velocity = true;
   std::string transport_at_surface = "none";   ///< none | tangential
   std::optional<double> h_factor_water;  ///< h / dp; empty: 1.8
+  std::optional<double> h_factor_soil;   ///< h / dp; empty: 1.3
+  std::optional<double> limiter_soil;    ///< xi^s of Eq. 54; empty: 20 times the dimension
+  std::string soil_pair_geometry = "current";  ///< frozen | current positions within an advection step
+  std::string soil_velocity_gradient = "corrected";  ///< corrected | plain sum of Eq. 55
+  std::string volume_fraction_reinitialization = "summation";  ///< summation | none
+  bool transport_velocity_soil = false;  ///< Eq. 87 for soil
   double max_lost_fraction = 0.01;
   double density_bound = 0.5;            ///< largest |rho / rho0 - 1| before the guard stops the run
   std::string outside = "remove";  ///< remove | stop

@@ -13,11 +13,14 @@
 
 namespace sphgeo {
 
+/// Symmetric tensor: xx, yy, zz, xy, yz, xz, the order of VTK; three-dimensional in every scene.
+using Sym3 = Eigen::Matrix<double, 6, 1>;
+
 /// state: evolves and is saved. reference: fixed at t = 0 and saved. derived: recomputed, never saved.
 enum class Lifetime { state, reference, derived };
 
-/// What the values of a field are.
-enum class FieldType { scalar, vector, tag, identity };
+/// What the values of a field are; a tensor is symmetric, with 6 components in every dimension.
+enum class FieldType { scalar, vector, tensor, tag, identity };
 
 /// The one description of a field: its name stands in decks, frames, plans and error texts.
 struct FieldSpec {

@@ -27,12 +27,28 @@ inline constexpr FieldSpec normal{"normal", vector, state, unit::none, "outward 
 inline constexpr FieldSpec reference_position{"reference_position", vector, reference, unit::length, "place at t = 0"};
 inline constexpr FieldSpec reference_normal{"reference_normal", vector, reference, unit::none, "normal at t = 0"};
 inline constexpr FieldSpec no_slip{"no_slip", scalar, reference, unit::none, "1 where water sticks to the wall, 0 where it slides"};
-inline constexpr FieldSpec wall_force{"wall_force", vector, derived, unit::force, "force of the water on a wall particle"};
+inline constexpr FieldSpec wall_force{"wall_force", vector, derived, unit::force, "force of water and soil on a wall particle"};
+
+// Soil.
+inline constexpr FieldSpec volume_fraction{"volume_fraction", scalar, state, unit::none, "share of the grains in the volume, n^s"};
+inline constexpr FieldSpec volume_fraction_rate{"volume_fraction_rate", scalar, state, unit::rate,
+                                                "rate of change of the volume fraction, Eq. 48"};
+inline constexpr FieldSpec initial_volume_fraction{"initial_volume_fraction", scalar, reference, unit::none, "volume fraction at t = 0"};
+inline constexpr FieldSpec stress{"stress", tensor, state, unit::pressure,
+                                  "effective stress, tension positive: xx, yy, zz, xy, yz, xz"};
+inline constexpr FieldSpec crowding{"crowding", scalar, derived, unit::none, "sum over neighbors at their volume at rest, over that of a lattice"};
+inline constexpr FieldSpec gradient_correction{"gradient_correction", tensor, state, unit::none, "inverse moment of the kernel gradient: xx, yy, zz, xy, yz, xz"};
+inline constexpr FieldSpec plastic_strain{"plastic_strain", scalar, state, unit::none, "accumulated equivalent plastic strain"};
+inline constexpr FieldSpec plastic_work{"plastic_work", scalar, state, unit::energy,
+                                        "energy dissipated by plastic flow; J per metre of depth in 2D"};
+inline constexpr FieldSpec saturation{"saturation", scalar, state, unit::none, "degree of saturation S_r, Eq. 68"};
 
 /// All of them, for lookups by name.
 inline constexpr const FieldSpec* all[] = {&id, &part, &position, &velocity, &acceleration,
                                            &acceleration_sum, &mass,
                                            &density, &density_rate, &pressure, &volume, &surface,
-                                           &normal, &reference_position, &reference_normal, &no_slip, &wall_force};
+                                           &normal, &reference_position, &reference_normal, &no_slip, &wall_force,
+                                           &volume_fraction, &volume_fraction_rate, &initial_volume_fraction, &stress, &crowding, &gradient_correction,
+                                           &plastic_strain, &plastic_work, &saturation};
 
 }  // namespace sphgeo::fields

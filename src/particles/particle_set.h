@@ -32,10 +32,12 @@ class ParticleSet {
 
   Field<double>& scalar(const FieldSpec& s) { return typed<double>(s); }
   Field<Vec<Dim>>& vector(const FieldSpec& s) { return typed<Vec<Dim>>(s); }
+  Field<Sym3>& tensor(const FieldSpec& s) { return typed<Sym3>(s); }
   Field<std::int32_t>& tag(const FieldSpec& s) { return typed<std::int32_t>(s); }
   Field<Id>& ids() { return typed<Id>(fields::id); }
   const Field<double>& scalar(const FieldSpec& s) const { return typed<double>(s); }
   const Field<Vec<Dim>>& vector(const FieldSpec& s) const { return typed<Vec<Dim>>(s); }
+  const Field<Sym3>& tensor(const FieldSpec& s) const { return typed<Sym3>(s); }
   const Field<std::int32_t>& tag(const FieldSpec& s) const { return typed<std::int32_t>(s); }
   const Field<Id>& ids() const { return typed<Id>(fields::id); }
 

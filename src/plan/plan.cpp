@@ -62,7 +62,7 @@ void Plan<Dim>::bind(const std::vector<Wish>& wishes) {
   // Pull in supporting effects until nothing changes.
   const auto wanted_by = [&](const PlannedEffect<Dim>& candidate) -> std::string {
     for (const FieldUse& made : candidate.needs.fields) {
-      if (!produces(made.access)) continue;
+      if (!produces(made.access) && made.access != Access::add) continue;
       for (const auto& e : effects_) {
         // What is made for observers serves no one but observers.
         if (candidate.info.stage == Stage::observe && e.info.stage != Stage::observe) continue;

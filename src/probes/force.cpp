@@ -7,12 +7,12 @@
 namespace sphgeo {
 namespace {
 
-/// Force of the water on one boundary.
+/// Force of water and soil on one boundary.
 struct ForceProbe final : Probe {
   std::string boundary;
 
   static Schema<ForceProbe> schema() {
-    Schema<ForceProbe> s("force", "force of the water on a boundary (Eqs. 76, 77)");
+    Schema<ForceProbe> s("force", "force of water and soil on a boundary (Eqs. 70, 76, 77)");
     s.required("boundary", &ForceProbe::boundary, unit::none, "name of the boundary");
     return s;
   }

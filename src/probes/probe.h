@@ -24,6 +24,8 @@ struct Probe : ProbeSpec {
   virtual std::vector<FieldRequest> needs() const = 0;
   /// One value per column.
   virtual void sample(const SceneView& scene, std::span<std::optional<double>> out) const = 0;
+  /// Reports what is wrong with the probe in this deck, such as an unknown name.
+  virtual void inspect(const Model&, CheckContext&) const {}
   /// Points that should lie inside the scene, for `check`.
   virtual std::vector<Vec3> places() const { return {}; }
 };

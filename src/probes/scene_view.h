@@ -25,6 +25,7 @@ class SceneView {
   /// One value of a field of a set; throws std::logic_error when the set has no such field.
   virtual std::function<double(Index)> scalar(const std::string& set, const FieldSpec& field) const = 0;
   virtual std::function<Vec3(Index)> vector(const std::string& set, const FieldSpec& field) const = 0;
+  virtual std::function<Sym3(Index)> tensor(const std::string& set, const FieldSpec& field) const = 0;
   virtual std::function<std::int32_t(Index)> tag(const std::string& set, const FieldSpec& field) const = 0;
   /// Calls f(i, W) for all particles of the set whose kernel reaches the point; W in 1/m^d.
   virtual void near(const std::string& set, const Vec3& at, const std::function<void(Index, double)>& f) const = 0;

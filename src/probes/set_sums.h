@@ -4,11 +4,12 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "materials/soil.h"
 #include "probes/scene_view.h"
 
 namespace sphgeo {
 
-/// Energies of a water set, J (J/m in 2D).
+/// Energies of a set, J (J/m in 2D).
 struct Energies {
   double kinetic = 0;
   double potential = 0;   ///< in the deck's gravity, about the origin
@@ -33,6 +34,41 @@ inline Energies water_energies(const SceneView& scene) {
     return m(i) * c * c * (std::log(rho(i) / rho0) + rho0 / rho(i) - 1);
   });
   return e;
+}
+
+/// Energies of a soil set: `internal` is the elastic energy, zero at no stress.
+inline Energies soil_energies(const SceneView& scene) {
+  Energies e;
+  if (!scene.has_set("soil")) return e;
+  const Index n = scene.size("soil");
+  const auto m = scene.scalar("soil", fields::mass), volume = scene.scalar("soil", fields::volume);
+  const auto x = scene.vector("soil", fields::position), v = scene.vector("soil", fields::velocity);
+  const auto stress = scene.tensor("soil", fields::stress);
+  const auto part = scene.tag("soil", fields::part);
+  const Model& model = scene.model();
+  const Vec3 g = model.gravity;
+  e.kinetic = ordered_sum(n, [&](Index i) { return 0.5 * m(i) * v(i).squaredNorm(); });
+  e.potential = ordered_sum(n, [&](Index i) { return -m(i) * g.dot(x(i)); });
+  std::vector<std::pair<double, double>> moduli;  // 2 G, 18 K by body
+  for (const Body& b : model.bodies) {
+    const auto* soil = dynamic_cast<const Soil*>(model.material(b.material));
+    moduli.emplace_back(soil ? 2 * soil->shear_modulus() : 1, soil ? 18 * soil->bulk_modulus() : 1);
+  }
+  e.internal = ordered_sum(n, [&](Index i) {
+    const Sym3 s = stress(i);
+    const double numbers[6] = {s[0], s[1], s[2], s[3], s[4], s[5]};
+    const StressInvariants<double> invariants(numbers);
+    const auto& [two_shear, bulk_18] = moduli[static_cast<std::size_t>(part(i))];
+    return volume(i) * (invariants.second / two_shear + invariants.first * invariants.first / bulk_18);
+  });
+  return e;
+}
+
+/// Energy that plastic flow of the soil has dissipated so far, J (J/m in 2D).
+inline double dissipated_energy(const SceneView& scene) {
+  if (!scene.has_set("soil")) return 0;
+  const auto work = scene.scalar("soil", fields::plastic_work);
+  return ordered_sum(scene.size("soil"), [&](Index i) { return work(i); });
 }
 
 }  // namespace sphgeo

@@ -11,6 +11,7 @@
 #include "geometry/relax_fill.h"
 #include "materials/water.h"
 #include "scene/join_walls.h"
+#include "scene/soil.h"
 
 namespace sphgeo {
 
@@ -18,15 +19,26 @@ double water_smoothing_length(const Model& model) {
   return model.numerics.h_factor_water.value_or(1.8) * model.resolution;
 }
 
-double support_radius(const Model& model) { return 2 * water_smoothing_length(model); }
+double soil_smoothing_length(const Model& model) {
+  return model.numerics.h_factor_soil.value_or(1.3) * model.resolution;
+}
 
 namespace {
 
-/// The particles of one body before they join their set.
-struct BodyPoints {
-  std::vector<Vec3> at;
-  double volume = 0;  ///< of one particle
-};
+/// Whether soil is all that moves: then its kernel alone decides how deep walls are.
+bool only_soil(const Model& model) {
+  return has_soil(model) && std::none_of(model.bodies.begin(), model.bodies.end(), [&](const Body& b) {
+    const MaterialSpec* m = model.material(b.material);
+    return m && m->phase() == "water";
+  });
+}
+
+}  // namespace
+
+double support_radius(const Model& model) {
+  if (only_soil(model)) return 2 * soil_smoothing_length(model);
+  return 2 * (has_soil(model) ? std::max(water_smoothing_length(model), soil_smoothing_length(model)) : water_smoothing_length(model));
+}
 
 BodyPoints fill_body(const Body& body, const Model& model) {
   const double dp = model.resolution;
@@ -36,6 +48,8 @@ BodyPoints fill_body(const Body& body, const Model& model) {
   }
   return {fill_lattice(*body.shape, dp, model.dimension), std::pow(dp, model.dimension)};
 }
+
+namespace {
 
 const Water* find_water(const Model& model) {
   for (const auto& m : model.materials)
@@ -117,7 +131,10 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
     moves = moves || wall.motion.has_value();
   }
   const double dp = model.resolution;
-  ParticleSet<Dim>& set = scene.world->add_set("walls", "wall", dp, water_smoothing_length(model), moves);
+  // Pairs use the larger smoothing length of both sets: that of walls must not exceed any other.
+  const double h = only_soil(model) ? soil_smoothing_length(model)
+                   : has_soil(model) ? std::min(water_smoothing_length(model), soil_smoothing_length(model)) : water_smoothing_length(model);
+  ParticleSet<Dim>& set = scene.world->add_set("walls", "wall", dp, h, moves);
   for (const FieldSpec* f : {&fields::normal, &fields::no_slip}) set.require(*f);
   if (moves)
     for (const FieldSpec* f : {&fields::acceleration, &fields::reference_position, &fields::reference_normal}) set.require(*f);
@@ -204,12 +221,13 @@ Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling) 
   Scene<Dim> scene;
   scene.world = std::make_unique<World<Dim>>(model);
   scene.sound = water_sound_speed(model, water_box(model), scene_box(model));
-  if (find_water(model) && !(scene.sound.value > 0)) {
+  if (find_water(model) && !only_soil(model) && !(scene.sound.value > 0)) {
     found.error("E112", model.place_of("materials"), "materials", "no speed of sound can be estimated: " + scene.sound.because,
                 "give max_speed or sound_speed of the water");
     scene.sound.value = 1;
   }
   add_water(scene, model, filling, found);
+  add_soil(scene, model, filling, found);
   add_walls(scene, model, filling, found);
   if (filling != Filling::none) set_domain(*scene.world, model);
   return scene;

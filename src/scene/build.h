@@ -44,6 +44,9 @@ double support_radius(const Model& model);
 /// Spacing of the water kernel, m.
 double water_smoothing_length(const Model& model);
 
+/// Spacing of the soil kernel, m.
+double soil_smoothing_length(const Model& model);
+
 extern template Scene<2> build_scene<2>(const Model&, Diagnostics&, Filling);
 extern template Scene<3> build_scene<3>(const Model&, Diagnostics&, Filling);
 

@@ -16,19 +16,20 @@ namespace {
 
 std::string point_text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z()); }
 
-// A body's particle inside another body's shape, deeper than a quarter of the spacing.
+// A body's particle inside the shape of another body of the same phase, deeper than a quarter of the spacing.
 template <int Dim>
-void check_bodies_overlap(const World<Dim>& world, Diagnostics& found) {
+void check_bodies_overlap(const World<Dim>& world, const std::string& phase, Diagnostics& found) {
   const Model& model = world.model();
-  const ParticleSet<Dim>* water = world.find("water");
-  if (!water || model.bodies.size() < 2) return;
-  const auto& x = water->vector(fields::position);
-  const auto& part = water->tag(fields::part);
+  const ParticleSet<Dim>* set = world.find(phase);
+  if (!set || model.bodies.size() < 2) return;
+  const auto& x = set->vector(fields::position);
+  const auto& part = set->tag(fields::part);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (const MaterialSpec* m = model.material(model.bodies[b].material); !m || m->phase() != phase) continue;
     const Aabb box = model.bodies[b].shape->box();
     std::vector<Index> inside(model.bodies.size(), 0);
     Vec3 example = Vec3::Zero();
-    for (Index i = 0; i < water->size(); ++i) {
+    for (Index i = 0; i < set->size(); ++i) {
       const auto other = static_cast<std::size_t>(part[i]);
       const Vec3 at = to_space<Dim>(x[i]);
       if (other >= b || !box.contains(at)) continue;
@@ -46,29 +47,29 @@ void check_bodies_overlap(const World<Dim>& world, Diagnostics& found) {
   }
 }
 
-// Water closer to a wall particle than half a spacing starts with a burst.
+// Water or soil closer to a wall particle than half a spacing starts with a burst.
 template <int Dim>
-void check_water_in_walls(World<Dim>& world, Diagnostics& found) {
-  const ParticleSet<Dim>*water = world.find("water"), *walls = world.find("walls");
-  if (!water || !walls || walls->size() == 0) return;
+void check_in_walls(World<Dim>& world, const std::string& phase, Diagnostics& found) {
+  const ParticleSet<Dim>*set = world.find(phase), *walls = world.find("walls");
+  if (!set || !walls || walls->size() == 0) return;
   const Model& model = world.model();
   CellGrid<Dim> grid;
   const auto& y = walls->vector(fields::position);
   const auto frame = FixedPoint<Dim>::fit(world.domain_lo(), world.domain_hi(), support_radius(model));
   grid.build({y.data(), static_cast<std::size_t>(y.size())}, frame, model.resolution);
-  const auto& x = water->vector(fields::position);
+  const auto& x = set->vector(fields::position);
   struct Clash {
     Index count = 0, body = -1, wall = -1;
     Vec3 at = Vec3::Zero();
   } clash;
-  for (Index i = 0; i < water->size(); ++i) {
+  for (Index i = 0; i < set->size(); ++i) {
     bool close = false;
     grid.for_each_in_reach(x[i], 0.45 * model.resolution, [&](Index j, double) {
       if (clash.count == 0 && !close) clash.wall = walls->tag(fields::part)[j];
       close = true;
     });
     if (close && clash.count++ == 0) {
-      clash.body = water->tag(fields::part)[i];
+      clash.body = set->tag(fields::part)[i];
       clash.at = to_space<Dim>(x[i]);
     }
   }
@@ -117,6 +118,8 @@ void check_probes(const World<Dim>& world, Diagnostics& found) {
   for (std::size_t k = 0; k < model.probes.size(); ++k) {
     const std::string path = fmt::format("probes[{}]", k);
     const auto& probe = dynamic_cast<const Probe&>(*model.probes[k]);
+    CheckContext context(found, model.places, path, model.dimension, model.resolution);
+    probe.inspect(model, context);
     for (const Vec3& at : probe.places())
       if (!box.grown(model.resolution).contains(at))
         found.warning("W123", model.place_of(path + ".at"), path + ".at",
@@ -147,8 +150,10 @@ template <int Dim>
 void check_scene(const Scene<Dim>& scene, Diagnostics& found) {
   World<Dim>& world = *scene.world;
   check_shapes(world.model(), found);
-  check_bodies_overlap(world, found);
-  check_water_in_walls(world, found);
+  for (const char* phase : {"water", "soil"}) {
+    check_bodies_overlap(world, phase, found);
+    check_in_walls(world, phase, found);
+  }
   check_lengths(world, found);
   check_probes(world, found);
   check_walls(scene, found);

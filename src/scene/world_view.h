@@ -26,6 +26,9 @@ class WorldView final : public SceneView {
   std::function<Vec3(Index)> vector(const std::string& set, const FieldSpec& field) const override {
     return [&f = world_.set(set).vector(field)](Index i) { return to_space<Dim>(f[i]); };
   }
+  std::function<Sym3(Index)> tensor(const std::string& set, const FieldSpec& field) const override {
+    return [&f = world_.set(set).tensor(field)](Index i) -> Sym3 { return f[i]; };
+  }
   std::function<std::int32_t(Index)> tag(const std::string& set, const FieldSpec& field) const override {
     return [&f = world_.set(set).tag(field)](Index i) { return f[i]; };
   }

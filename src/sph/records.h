@@ -98,4 +98,10 @@ RecordView<Dim, T, 2> with(const Records<Dim, T>& a, const Records<Dim, T>& b) {
   return {{&a, &b}};
 }
 
+/// Three record arrays of the same particles.
+template <int Dim, class T>
+RecordView<Dim, T, 3> with(const Records<Dim, T>& a, const Records<Dim, T>& b, const Records<Dim, T>& c) {
+  return {{&a, &b, &c}};
+}
+
 }  // namespace sphgeo

@@ -111,7 +111,7 @@ void World<Dim>::rearrange() {
     grid.build({x.data(), static_cast<std::size_t>(x.size())}, frame_, reach());
     s->permute(grid.order());
     grid.set_sorted();
-    for (int which = 0; which < 2; ++which) {
+    for (int which = 0; which < 3; ++which) {
       const auto it = records_.find({s->name(), which});
       if (it == records_.end()) continue;
       if (single_) it->second.single.resize(s->size(), frame_);

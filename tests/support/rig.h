@@ -43,14 +43,16 @@ struct Rig {
   Rig& operator=(const Rig&) = delete;
 
   ParticleSet<Dim>& water() { return world.set("water"); }
+  ParticleSet<Dim>& soil() { return world.set("soil"); }
   ParticleSet<Dim>& walls() { return world.set("walls"); }
 
   /// Moves every water particle by up to `by` spacings, the same way in every run.
-  void jitter(double by, std::uint64_t seed = 5) {
-    auto& x = water().vector(fields::position);
+  void jitter(double by, std::uint64_t seed = 5) { jitter_set("water", by, seed); }
+  void jitter_set(const std::string& set, double by, std::uint64_t seed = 5) {
+    auto& x = world.set(set).vector(fields::position);
     for (Index i = 0; i < x.size(); ++i)
       for (int k = 0; k < Dim; ++k)
-        x[i][k] += by * water().spacing() *
+        x[i][k] += by * world.set(set).spacing() *
                    (2 * random_uniform(seed, static_cast<std::uint64_t>(Dim * i + k)) - 1);
   }
 
@@ -112,6 +114,7 @@ struct Rig {
         switch (field->spec().type) {
           case FieldType::scalar: add(set->scalar(field->spec()).data(), n * sizeof(double)); break;
           case FieldType::vector: add(set->vector(field->spec()).data(), n * sizeof(Vec<Dim>)); break;
+          case FieldType::tensor: add(set->tensor(field->spec()).data(), n * sizeof(Sym3)); break;
           case FieldType::tag: add(set->tag(field->spec()).data(), n * sizeof(std::int32_t)); break;
           case FieldType::identity: add(set->ids().data(), n * sizeof(Id)); break;
         }

@@ -1,0 +1,37 @@
+#include <algorithm>
+
+#include "effects/effect.h"
+
+namespace sphgeo {
+namespace {
+
+/// The clock of a scene in which nothing moves, such as one that only leads material points along stress
+/// paths: as fast as its probes want to look.
+template <int Dim>
+class IdleClock final : public Effect<Dim> {
+ public:
+  static EffectInfo info() {
+    return {"idle_clock", Stage::predict, "", "lets time pass where no particle moves", false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    for (const auto& set : world.sets())
+      if (set->phase() != "wall") return {"the " + set->name() + " bounds the steps"};
+    return {std::make_unique<IdleClock>(), "there is nothing that moves"};
+  }
+
+  std::string acts_on() const override { return "time"; }
+  Needs needs() const override { return {}; }
+  void apply(World<Dim>&) override {}
+  void limit(const World<Dim>& world, StepLimits& limits) const override {
+    const Model& model = world.model();
+    double step = model.run_interval();
+    for (const auto& p : model.probes) step = std::min(step, model.probe_interval(*p));
+    limits.advection = std::min(limits.advection, step);
+    limits.acoustic = std::min(limits.acoustic, step);
+  }
+};
+
+const RegisterEffect<IdleClock> registered;
+
+}  // namespace
+}  // namespace sphgeo

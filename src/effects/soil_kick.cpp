@@ -1,0 +1,102 @@
+#include <cmath>
+
+#include "core/parallel.h"
+#include "effects/effect.h"
+#include "effects/soil_phase.h"
+
+namespace sphgeo {
+namespace {
+
+/// Velocity and place at the end of the acoustic step (Eqs. 97, 98), and the step bounds of the soil
+/// (Eqs. 91, 92). A fixed skeleton stays, a prescribed one follows the velocity of its body.
+template <int Dim>
+class SoilKick final : public Effect<Dim> {
+ public:
+  static EffectInfo info() {
+    return {"soil_kick", Stage::kick, "Eqs. 91, 92, 97, 98", "velocity and place of soil at the end of the step; bounds of both clocks", false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    if (!world.find("soil")) return {"there is no soil"};
+    return {std::make_unique<SoilKick>(SoilParts(world).deformable), "there is soil"};
+  }
+
+  explicit SoilKick(bool deformable) : deformable_(deformable) {}
+
+  std::string acts_on() const override { return "soil"; }
+  Needs needs() const override {
+    Needs n{{{"soil", &fields::velocity, Access::update},
+             {"soil", &fields::position, Access::update},
+             {"soil", &fields::acceleration, Access::write}},
+            {}};
+    if (deformable_) n.fields.push_back({"soil", &fields::acceleration_sum, Access::read});
+    return n;
+  }
+
+  void prepare(World<Dim>& world) override { soil_ = &world.set("soil"); }
+
+  void apply(World<Dim>& world) override {
+    const double dt = world.clock.dt_acoustic;
+    const SoilParts parts(world);
+    auto& x = soil_->vector(fields::position);
+    auto& v = soil_->vector(fields::velocity);
+    auto& a = soil_->vector(fields::acceleration);
+    const Field<Vec<Dim>>* sum = deformable_ ? &soil_->vector(fields::acceleration_sum) : nullptr;
+    const auto& part = soil_->tag(fields::part);
+    const bool repack = world.model().numerics.soil_pair_geometry == "current";
+    world.with_pair_precision([&](auto number) {
+      using T = decltype(number);
+      auto& records = world.records("soil", 0).template get<T>();
+      parallel_for(soil_->size(), [&](Index i) {
+        if (parts[part[i]].material->moves_by_forces()) {
+          a[i] = (*sum)[i];
+          v[i] += dt * a[i];
+          x[i] += 0.5 * dt * v[i];
+        } else if (parts[part[i]].material->skeleton == "fixed") {
+          a[i].setZero();
+        } else {
+          follow(world.model().bodies[static_cast<std::size_t>(part[i])], dt, x[i], v[i], a[i]);
+        }
+        T* slot = records[i];
+        for (int k = 0; k < Dim; ++k) slot[soil_slot::velocity + k] = static_cast<T>(v[i][k]);
+        if (repack) records.set_position(i, x[i]);
+      });
+    });
+  }
+
+  void limit(const World<Dim>& world, StepLimits& limits) const override {
+    const Numerics& n = world.model().numerics;
+    const SoilParts parts(world);
+    const double h = soil_->smoothing_length();
+    if (!parts.deformable && world.find("water")) return;  // at rest or led: no wave runs in it
+    const double sound = parts.deformable ? parts.fastest_wave : parts.first.sound_speed;
+    const auto& v = soil_->vector(fields::velocity);
+    const double speed = std::sqrt(block_max(soil_->size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
+    limits.note_speed("soil", speed / sound);
+    const double acoustic = n.cfl_acoustic * h / (sound + speed);  // Eq. 92
+    limits.acoustic = std::min(limits.acoustic, acoustic);
+    // Eq. 91; at rest the acoustic step bounds it, as for water.
+    limits.advection = std::min(limits.advection, std::min(n.advection_ratio_max * acoustic, n.cfl_advection * h / std::max(speed, 1e-300)));
+  }
+
+ private:
+  // Midpoint rule through a velocity field; x comes at the middle of the step, reached with v.
+  static void follow(const Body& body, double dt, Vec<Dim>& x, Vec<Dim>& v, Vec<Dim>& a) {
+    const auto field = [&](const Vec<Dim>& at) {
+      const Vec3 p = to_space<Dim>(at);
+      return to_scene<Dim>(Vec3(body.velocity[0](p, 0), body.velocity[1](p, 0), body.velocity[2](p, 0)));
+    };
+    const Vec<Dim> start = x - 0.5 * dt * v;
+    x = start + dt * field(x);
+    const Vec<Dim> end = field(x);
+    a = dt > 0 ? Vec<Dim>((end - v) / dt) : Vec<Dim>::Zero();
+    v = end;
+  }
+
+  bool deformable_;
+  ParticleSet<Dim>* soil_ = nullptr;
+};
+
+const RegisterEffect<SoilKick> registered;
+
+}  // namespace
+}  // namespace sphgeo

@@ -1,0 +1,74 @@
+#include "core/parallel.h"
+#include "effects/effect.h"
+#include "effects/soil_phase.h"
+
+namespace sphgeo {
+namespace {
+
+/// Volume fraction, place and volume at the middle of the acoustic step (Eq. 96).
+template <int Dim>
+class SoilPredict final : public Effect<Dim> {
+ public:
+  static EffectInfo info() {
+    return {"soil_predict", Stage::predict, "Eqs. 1, 96", "volume fraction, place and volume of soil at the middle of the step", false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    if (!world.find("soil")) return {"there is no soil"};
+    return {std::make_unique<SoilPredict>(), "there is soil"};
+  }
+
+  std::string acts_on() const override { return "soil"; }
+  Needs needs() const override {
+    return {{{"soil", &fields::volume_fraction, Access::update},
+             {"soil", &fields::position, Access::update},
+             {"soil", &fields::volume_fraction_rate, Access::read},
+             {"soil", &fields::velocity, Access::read},
+             {"soil", &fields::mass, Access::read},
+             {"soil", &fields::stress, Access::read}, {"soil", &fields::gradient_correction, Access::read},
+             {"soil", &fields::volume, Access::write}},
+            {}};
+  }
+
+  void prepare(World<Dim>& world) override {
+    soil_ = &world.set("soil");
+    for (int k = 0; k < soil_records_used(world); ++k) world.records("soil", k);
+  }
+
+  void apply(World<Dim>& world) override {
+    const double half = 0.5 * world.clock.dt_acoustic;
+    const SoilParts parts(world);
+    auto& n = soil_->scalar(fields::volume_fraction);
+    auto& x = soil_->vector(fields::position);
+    auto& volume = soil_->scalar(fields::volume);
+    const auto& rate = soil_->scalar(fields::volume_fraction_rate);
+    const auto& v = soil_->vector(fields::velocity);
+    const auto& m = soil_->scalar(fields::mass);
+    const auto& part = soil_->tag(fields::part);
+    const bool repack = world.model().numerics.soil_pair_geometry == "current";
+    world.with_pair_precision([&](auto number) {
+      using T = decltype(number);
+      auto& first = world.records("soil", 0).template get<T>();
+      const SoilPacking<Dim, T> pack(world, *soil_);
+      parallel_for(soil_->size(), [&](Index i) {
+        n[i] += half * rate[i];
+        x[i] += half * v[i];
+        volume[i] = m[i] / (n[i] * parts[part[i]].grain_density);
+        pack(i);
+        if (repack) first.set_position(i, x[i]);
+      });
+    });
+  }
+
+  void bounds(const World<Dim>&, std::vector<FieldBound>& watched) const override {
+    watched.push_back({"soil", &fields::volume_fraction, 0.0, 4.0, "soil compressed by pressures of the order of its bulk modulus: bodies that "
+                       "start inside each other, or a youngs_modulus that is too low"});
+  }
+
+ private:
+  ParticleSet<Dim>* soil_ = nullptr;
+};
+
+const RegisterEffect<SoilPredict> registered;
+
+}  // namespace
+}  // namespace sphgeo

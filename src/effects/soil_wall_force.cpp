@@ -1,0 +1,68 @@
+#include "effects/effect.h"
+#include "effects/soil_wall_pair.h"
+
+namespace sphgeo {
+namespace {
+
+template <int Dim>
+struct WallForceOnSoil {
+  SoilWallPair<Dim> wall;
+
+  template <class T>
+  struct Sums {
+    LaneVec<Dim, T> force{};
+  };
+  template <class T>
+  void operator()(Sums<T>& sum, const SoilRecord<Dim, T>& i, const Record<Dim, T, 2>& j,
+                  const LaneVec<Dim, T>& r, const T& r2) const {
+    sum.force += wall.force(i, j, r, r2);
+  }
+};
+
+/// Force of walls on the soil by a one-sided Riemann problem (Eqs. 69, 95).
+template <int Dim>
+class SoilWallForce final : public Effect<Dim> {
+ public:
+  static EffectInfo info() {
+    return {"soil_wall_force", Stage::force, "Eqs. 69, 95", "stress and dissipation (one-sided Riemann) of walls on the soil", false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    if (!world.find("soil") || !world.find("walls")) return {"there is no soil, or there are no walls"};
+    if (!SoilParts(world).deformable) return {"no skeleton is deformable"};
+    return {std::make_unique<SoilWallForce>(), "there are soil and walls"};
+  }
+
+  std::string acts_on() const override { return "soil near walls"; }
+  Needs needs() const override {
+    return {{{"soil", &fields::volume, Access::read}, {"soil", &fields::stress, Access::read},
+             {"soil", &fields::mass, Access::read},
+             {"soil", &fields::acceleration_sum, Access::add}, {"walls", &fields::volume, Access::read}},
+            {{"soil", "walls"}}};
+  }
+  void prepare(World<Dim>& world) override {
+    soil_ = &world.set("soil");
+  }
+
+  void apply(World<Dim>& world) override {
+    const WallForceOnSoil<Dim> pair{SoilWallPair<Dim>(world, *soil_)};
+    const auto& m = soil_->scalar(fields::mass);
+    const auto& volume = soil_->scalar(fields::volume);
+    auto& sum_of_forces = soil_->vector(fields::acceleration_sum);
+    const NeighborList& list = world.list("soil", "walls");
+    world.with_pair_precision([&](auto number) {
+      using T = decltype(number);
+      gather<WallForceOnSoil<Dim>::template Sums>(
+          list, stress_records<T, soil_records<Dim>>(world),
+          with(world.records("walls", 0).template get<T>(), world.records("walls", 1).template get<T>()), pair,
+          [&](Index i, const auto& sum) { sum_of_forces[i] += to_vec(sum.force) * (volume[i] / m[i]); });
+    });
+  }
+
+ private:
+  ParticleSet<Dim>* soil_ = nullptr;
+};
+
+const RegisterEffect<SoilWallForce> registered;
+
+}  // namespace
+}  // namespace sphgeo

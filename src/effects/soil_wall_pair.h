@@ -1,0 +1,72 @@
+#pragma once
+// Soil against wall particles: one pair function for both directions (Eqs. 69, 70, 95).
+
+#include <algorithm>
+
+#include "effects/soil_phase.h"
+#include "effects/wall_pair.h"
+
+namespace sphgeo {
+
+/// One-sided Riemann problem between a soil particle and a wall particle.
+///
+/// The wall carries the stress of the soil particle (Eq. 69), plus the imaginary pressure of Eq. 95 by
+/// which the wall holds the soil up: without it the soil at a floor would bear half a spacing too
+/// little, and soil beside a smooth wall would lose half of the vertical gradient of its stress and
+/// sink. Signs and the part along the wall are those of the water (see WallPair). A wall that lets the
+/// soil slide bears no shear stress.
+template <int Dim>
+struct SoilWallPair {
+  Kernel<Dim> kernel;
+  double limiter;  ///< xi^s
+  double near;     ///< distance below which a particle of the wall is too close, m
+  double per_spacing;  ///< 1 / dp
+  double per_step;     ///< 1 / dt
+
+  SoilWallPair(const World<Dim>& world, const ParticleSet<Dim>& soil)
+      : kernel(soil_kernel(soil)), limiter(soil_limiter(world)), near(0.7 * soil.spacing()), per_spacing(1 / soil.spacing()),
+        per_step(1 / std::max(world.clock.dt_acoustic, 1e-12)) {}
+
+  /// Velocity of the wall's particle less that of the soil's, of the mirrored velocity of Eq. 69.
+  template <class T, int N>
+  static LaneVec<Dim, T> mirrored(const Record<Dim, T, N>& soil, const Record<Dim, T, 2>& wall) {
+    const LaneVec<Dim, T> n = wall.vec(wall_slot::normal);
+    const LaneVec<Dim, T> dv = wall.vec(wall_slot::velocity) - soil.vec(soil_slot::velocity);
+    const T sticking = wall[wall_slot::no_slip];
+    return T(2) * (sticking * dv + ((T(1) - sticking) * dot(dv, n)) * n);
+  }
+
+  /// Force of the wall on the soil per unit volume of the soil; r = r_soil - r_wall.
+  template <class T>
+  LaneVec<Dim, T> force(const SoilRecord<Dim, T>& soil, const Record<Dim, T, 2>& wall,
+                        const LaneVec<Dim, T>& r, const T& r2) const {
+    using namespace soil_slot;
+    const LaneVec<Dim, T> n = wall.vec(wall_slot::normal);
+    const T r_n = dot(r, n);
+    // Behind the surface of this particle of the wall, as beside a rim, it has nothing to say.
+    const T gradient = select(r_n > T(0), kernel.dw_over_r(r2) * wall[wall_slot::volume], T(0));
+    const T sticking = wall[wall_slot::no_slip];
+    // A layer of sand that has spread to less than the size of a particle bears no stress that could hold it
+    // up. A particle nearer to the surface of the wall than a quarter of a spacing meets the bulk modulus.
+    const T bulk = soil[impedance<Dim>] * soil[impedance<Dim>] / max(T(1e-30), soil[density<Dim>]);
+    const T contact = bulk * (T(per_spacing) * max(T(0), T(near) - r_n));
+    const T height = max(T(0), r_n);
+    const T dummy = soil[density<Dim>] * wall[wall_slot::push] * height + contact;
+    T tensor[Dim * Dim];
+    unpack_stress(soil, tensor);
+    const LaneVec<Dim, T> on_wall = times(tensor, r_n * n);
+    LaneVec<Dim, T> f = T(2) * (sticking * on_wall + ((T(1) - sticking) * dot(on_wall, n)) * n) - (dummy * r_n) * n;
+    // Coulomb friction of what the wall bears beside the stress: no more than what stops the particle within the step.
+    const LaneVec<Dim, T> dv = soil.vec(velocity) - wall.vec(wall_slot::velocity);
+    const LaneVec<Dim, T> slip = dv - dot(dv, n) * n;
+    const T slip2 = dot(slip, slip);
+    const T grip = min(soil[friction<Dim>] * dummy * inverse_length(slip2), soil[density<Dim>] * T(per_step) * height);
+    f += (sticking * grip * r_n) * slip;
+    // Dissipation along the normal (Eqs. 54, 69): U_L - U_R = -2 (v - v_wall) . n.
+    const T closing = max(T(0), T(2) * dot(wall.vec(wall_slot::velocity) - soil.vec(velocity), n));
+    const T beta = min(T(limiter) * soil[density<Dim>] / max(T(1e-30), soil[impedance<Dim>]) * closing, T(1));
+    return gradient * f - (beta * soil[impedance<Dim>] * closing * gradient * length(r2)) * n;
+  }
+};
+
+}  // namespace sphgeo

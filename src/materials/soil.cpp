@@ -1,0 +1,63 @@
+#include "materials/soil.h"
+
+#include <cmath>
+
+#include "deck/registry.h"
+
+namespace sphgeo {
+
+Schema<Soil> Soil::schema() {
+  Schema<Soil> s("soil", "elastic, perfectly plastic soil skeleton after Drucker and Prager (Eqs. 12 to 21)");
+  s.required("density", &Soil::density, unit::density, "density of the grains, rho^s; with volume_fraction 1 that of the bulk").above(0);
+  s.optional("volume_fraction", &Soil::volume_fraction, unit::none,
+             "share of the grains in the volume at t = 0; auto: each body gives its own").above(0).at_most(1).equation("Eq. 1");
+  s.required("youngs_modulus", &Soil::youngs_modulus, unit::pressure, "Young's modulus E of the skeleton").above(0);
+  s.optional("poisson_ratio", &Soil::poisson_ratio, unit::none, "Poisson's ratio nu of the skeleton").above(-1).below(0.5);
+  s.optional("plasticity", &Soil::plasticity, unit::none, "yield criterion, or none for an elastic soil").choices({"drucker_prager", "none"});
+  s.optional("friction_angle", &Soil::friction_angle, unit::angle, "internal friction angle phi").at_least(0).below(1.5).equation("Eq. 14");
+  s.optional("friction", &Soil::friction, unit::none, "internal friction coefficient mu = tan phi, instead of the angle").at_least(0);
+  s.optional("cohesion", &Soil::cohesion, unit::pressure, "cohesion c").at_least(0).equation("Eq. 14");
+  s.optional("saturated_cohesion", &Soil::saturated_cohesion, unit::pressure,
+             "cohesion at full saturation; between, it falls linearly; auto: cohesion does not depend on water").at_least(0).equation("Eq. 108");
+  s.optional("dilation_angle", &Soil::dilation_angle, unit::angle, "dilation angle psi").at_least(0).below(1.5).equation("Eq. 14");
+  s.optional("skeleton", &Soil::skeleton, unit::none,
+             "deformable; fixed: it never moves; prescribed: it keeps the velocity field of its bodies, whatever the stress")
+      .choices({"deformable", "fixed", "prescribed"});
+  s.check([](Soil& m, CheckContext& c) {
+    if (m.elastic()) {
+      for (const char* key : {"friction_angle", "friction", "cohesion", "saturated_cohesion", "dilation_angle"})
+        if (c.given(key)) c.error(key, std::string("'") + key + "' has no meaning without plasticity", "leave it out, or leave 'plasticity: none' out");
+      return;
+    }
+    if (m.friction_angle && m.friction)
+      c.error("friction", "the friction is given twice", "give friction_angle or friction, not both");
+    if (!m.friction_angle && !m.friction)
+      c.error("", "the soil has no friction", "give friction_angle (0 deg is allowed) or friction, or plasticity: none");
+    // More dilation than friction makes the flow a source of energy.
+    if (std::tan(m.dilation_angle) > m.tan_friction() * (1 + 1e-12))
+      c.error("dilation_angle", "the dilation angle exceeds the friction angle", "the plastic work would be negative");
+    if (m.saturated_cohesion && *m.saturated_cohesion > m.cohesion)
+      c.error("saturated_cohesion", "the saturated cohesion exceeds the cohesion", "water takes cohesion away");
+  });
+  return s;
+}
+
+double Soil::tan_friction() const { return friction ? *friction : std::tan(friction_angle.value_or(0)); }
+
+DruckerPrager<double> Soil::constants(double saturation) const {
+  DruckerPrager<double> m{bulk_modulus(), shear_modulus(), 0, 0, 0, 0};
+  if (elastic()) return with_strength(m, drucker_prager::unbounded);
+  const double dry = cohesion, wet = saturated_cohesion.value_or(cohesion);
+  m.friction = drucker_prager::slope(tan_friction());
+  m.dilation = drucker_prager::slope(std::tan(dilation_angle));
+  return with_strength(m, drucker_prager::strength(wet + (1 - saturation) * (dry - wet), tan_friction()));
+}
+
+double Soil::pressure_at_rest() const {
+  if (elastic()) return poisson_ratio / (1 - poisson_ratio);
+  return 1 - std::sin(std::atan(tan_friction()));
+}
+
+static const Register<MaterialSpec, Soil> registered{"soil"};
+
+}  // namespace sphgeo

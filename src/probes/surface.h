@@ -1,0 +1,50 @@
+#pragma once
+// Heights of the surface of a set, where the kernel sum over it falls to one half.
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "probes/scene_view.h"
+
+namespace sphgeo {
+
+/// Height of the topmost surface of the set above each place (z is ignored); empty where there is none.
+inline std::vector<std::optional<double>> surface_heights(const SceneView& scene, const std::string& set, const std::vector<Vec3>& places) {
+  std::vector<std::optional<double>> heights(places.size());
+  if (!scene.has_set(set) || scene.size(set) == 0) return heights;
+  const double dp = scene.spacing(set);
+  const auto x = scene.vector(set, fields::position);
+  const auto volume = scene.scalar(set, fields::volume);
+  const double reach = 2 * scene.smoothing_length(set);
+  std::vector<double> top(places.size(), -INFINITY), bottom(places.size(), INFINITY);
+  for (Index i = 0; i < scene.size(set); ++i) {
+    const Vec3 p = x(i);
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      if (std::abs(p.x() - places[k].x()) > reach || std::abs(p.y() - places[k].y()) > reach) continue;
+      top[k] = std::max(top[k], p.z());
+      bottom[k] = std::min(bottom[k], p.z());
+    }
+  }
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const auto filled = [&](double z) {
+      double sum = 0;
+      scene.near(set, {places[k].x(), places[k].y(), z}, [&](Index i, double w) { sum += volume(i) * w; });
+      return sum;
+    };
+    // From the highest particle of the neighborhood down to the first half-filled kernel.
+    double above = 0;
+    for (double z = top[k] + 2 * dp; z > bottom[k] - dp; z -= 0.25 * dp) {
+      const double here = filled(z);
+      if (here >= 0.5) {
+        heights[k] = z + 0.25 * dp * (here - 0.5) / std::max(here - above, 1e-12);
+        break;
+      }
+      above = here;
+    }
+  }
+  return heights;
+}
+
+}  // namespace sphgeo

@@ -1,0 +1,49 @@
+#include <fmt/format.h>
+
+#include "deck/registry.h"
+#include "deck/schema.h"
+#include "probes/probe.h"
+#include "probes/surface.h"
+
+namespace sphgeo {
+namespace {
+
+/// Heights of a surface along a line.
+struct SurfaceProfileProbe final : Probe {
+  std::string set = "soil";
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero();
+  int points = 21;
+
+  static Schema<SurfaceProfileProbe> schema() {
+    Schema<SurfaceProfileProbe> s("surface_profile", "heights of the topmost surface of a set along a line");
+    s.optional("set", &SurfaceProfileProbe::set, unit::none, "the particle set");
+    s.required("from", &SurfaceProfileProbe::from, unit::length, "start of the line; its z is ignored");
+    s.required("to", &SurfaceProfileProbe::to, unit::length, "end of the line; its z is ignored");
+    s.optional("points", &SurfaceProfileProbe::points, unit::none, "number of places, both ends included").at_least(2).at_most(1000);
+    return s;
+  }
+  std::vector<Column> columns(const Model&) const override {
+    std::vector<Column> columns;
+    for (int k = 0; k < points; ++k) {
+      const Vec3 at = place(k);
+      columns.push_back({fmt::format("height_{}", k), "m", fmt::format("z of the surface at x = {:.6g} m, y = {:.6g} m; empty where there is none", at.x(), at.y())});
+    }
+    return columns;
+  }
+  std::vector<FieldRequest> needs() const override { return {{set, &fields::volume}}; }
+
+  void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
+    std::vector<Vec3> places;
+    for (int k = 0; k < points; ++k) places.push_back(place(k));
+    const auto heights = surface_heights(scene, set, places);
+    std::copy(heights.begin(), heights.end(), out.begin());
+  }
+
+ private:
+  Vec3 place(int k) const { return from + (to - from) * k / (points - 1); }
+};
+
+const Register<ProbeSpec, SurfaceProfileProbe> registered{"surface_profile"};
+
+}  // namespace
+}  // namespace sphgeo
