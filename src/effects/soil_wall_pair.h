@@ -24,7 +24,7 @@ struct SoilWallPair {
   double per_step;     ///< 1 / dt
 
   SoilWallPair(const World<Dim>& world, const ParticleSet<Dim>& soil)
-      : kernel(soil_kernel(soil)), limiter(soil_limiter(world)), near(0.7 * soil.spacing()), per_spacing(1 / soil.spacing()),
+      : kernel(soil_kernel(soil)), limiter(soil_limiter(world)), near(0.85 * soil.spacing()), per_spacing(1 / soil.spacing()),
         per_step(1 / std::max(world.clock.dt_acoustic, 1e-12)) {}
 
   /// Velocity of the wall's particle less that of the soil's, of the mirrored velocity of Eq. 69.
@@ -46,21 +46,22 @@ struct SoilWallPair {
     // Behind the surface of this particle of the wall, as beside a rim, it has nothing to say.
     const T gradient = select(r_n > T(0), kernel.dw_over_r(r2) * wall[wall_slot::volume], T(0));
     const T sticking = wall[wall_slot::no_slip];
-    // A layer of sand that has spread to less than the size of a particle bears no stress that could hold it
-    // up. A particle nearer to the surface of the wall than a quarter of a spacing meets the bulk modulus.
+    // A layer of sand that has spread to less than the size of a particle bears no stress that could hold it up: a
+    // particle that comes too near to one of the wall meets the bulk modulus, along the line between them, so that it is as
+    // right beside a rim or an edge as over a plane. In a square of four it comes down to the level of the surface.
     const T bulk = soil[impedance<Dim>] * soil[impedance<Dim>] / max(T(1e-30), soil[density<Dim>]);
-    const T contact = bulk * (T(per_spacing) * max(T(0), T(near) - r_n));
+    const T contact = bulk * (T(per_spacing) * max(T(0), T(near) - length(r2)));
     const T height = max(T(0), r_n);
-    const T dummy = soil[density<Dim>] * wall[wall_slot::push] * height + contact;
+    const T rise = soil[density<Dim>] * wall[wall_slot::push] * height;
     T tensor[Dim * Dim];
     unpack_stress(soil, tensor);
     const LaneVec<Dim, T> on_wall = times(tensor, r_n * n);
-    LaneVec<Dim, T> f = T(2) * (sticking * on_wall + ((T(1) - sticking) * dot(on_wall, n)) * n) - (dummy * r_n) * n;
+    LaneVec<Dim, T> f = T(2) * (sticking * on_wall + ((T(1) - sticking) * dot(on_wall, n)) * n) - (rise * r_n) * n - contact * r;
     // Coulomb friction of what the wall bears beside the stress: no more than what stops the particle within the step.
     const LaneVec<Dim, T> dv = soil.vec(velocity) - wall.vec(wall_slot::velocity);
     const LaneVec<Dim, T> slip = dv - dot(dv, n) * n;
     const T slip2 = dot(slip, slip);
-    const T grip = min(soil[friction<Dim>] * dummy * inverse_length(slip2), soil[density<Dim>] * T(per_step) * height);
+    const T grip = min(soil[friction<Dim>] * (rise + contact) * inverse_length(slip2), soil[density<Dim>] * T(per_step) * height);
     f += (sticking * grip * r_n) * slip;
     // Dissipation along the normal (Eqs. 54, 69): U_L - U_R = -2 (v - v_wall) . n.
     const T closing = max(T(0), T(2) * dot(wall.vec(wall_slot::velocity) - soil.vec(velocity), n));
