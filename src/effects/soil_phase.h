@@ -198,24 +198,24 @@ class SoilPacking {
   }
 
   void operator()(Index i) const {
-    using namespace soil_slot;
+    namespace slot = soil_slot;
     T* one = (*records_[0])[i];
-    one[soil_slot::volume] = static_cast<T>(volume_[i]);
-    for (int k = 0; k < Dim; ++k) one[velocity + k] = static_cast<T>(velocity_[i][k]);
+    one[slot::volume] = static_cast<T>(volume_[i]);
+    for (int k = 0; k < Dim; ++k) one[slot::velocity + k] = static_cast<T>(velocity_[i][k]);
 
     const Sym3 &s = stress_[i], &b = correction_[i];
     for (int k = 0; k < Dim; ++k)
       for (int l = 0; l < Dim; ++l) {
         double sum = 0;
         for (int m = 0; m < Dim; ++m) sum += s[tensor_index<Dim>[k][m]] * b[tensor_index<Dim>[m][l]];
-        put(i, stress<Dim>(k * Dim + l), sum);
+        put(i, slot::stress<Dim>(k * Dim + l), sum);
       }
-    if (count_ * record_size <= pressure<Dim>) return;
+    if (count_ * record_size <= slot::pressure<Dim>) return;
     const SoilPart& part = parts_[part_[i]];
-    put(i, pressure<Dim>, -(s[0] + s[1] + s[2]) / 3);
-    put(i, density<Dim>, part.density);
-    put(i, impedance<Dim>, part.impedance());
-    put(i, friction<Dim>, part.friction);
+    put(i, slot::pressure<Dim>, -(s[0] + s[1] + s[2]) / 3);
+    put(i, slot::density<Dim>, part.density);
+    put(i, slot::impedance<Dim>, part.impedance());
+    put(i, slot::friction<Dim>, part.friction);
   }
 
  private:

@@ -40,7 +40,7 @@ struct SoilWallPair {
   template <class T>
   LaneVec<Dim, T> force(const SoilRecord<Dim, T>& soil, const Record<Dim, T, 2>& wall,
                         const LaneVec<Dim, T>& r, const T& r2) const {
-    using namespace soil_slot;
+    namespace slot = soil_slot;
     const LaneVec<Dim, T> n = wall.vec(wall_slot::normal);
     const T r_n = dot(r, n);
     // Behind the surface of this particle of the wall, as beside a rim, it has nothing to say.
@@ -49,24 +49,24 @@ struct SoilWallPair {
     // A layer of sand that has spread to less than the size of a particle bears no stress that could hold it up: a
     // particle that comes too near to one of the wall meets the bulk modulus, along the line between them, so that it is as
     // right beside a rim or an edge as over a plane. In a square of four it comes down to the level of the surface.
-    const T bulk = soil[impedance<Dim>] * soil[impedance<Dim>] / max(T(1e-30), soil[density<Dim>]);
+    const T bulk = soil[slot::impedance<Dim>] * soil[slot::impedance<Dim>] / max(T(1e-30), soil[slot::density<Dim>]);
     const T contact = bulk * (T(per_spacing) * max(T(0), T(near) - length(r2)));
     const T height = max(T(0), r_n);
-    const T rise = soil[density<Dim>] * wall[wall_slot::push] * height;
+    const T rise = soil[slot::density<Dim>] * wall[wall_slot::push] * height;
     T tensor[Dim * Dim];
     unpack_stress(soil, tensor);
     const LaneVec<Dim, T> on_wall = times(tensor, r_n * n);
     LaneVec<Dim, T> f = T(2) * (sticking * on_wall + ((T(1) - sticking) * dot(on_wall, n)) * n) - (rise * r_n) * n - contact * r;
     // Coulomb friction of what the wall bears beside the stress: no more than what stops the particle within the step.
-    const LaneVec<Dim, T> dv = soil.vec(velocity) - wall.vec(wall_slot::velocity);
+    const LaneVec<Dim, T> dv = soil.vec(slot::velocity) - wall.vec(wall_slot::velocity);
     const LaneVec<Dim, T> slip = dv - dot(dv, n) * n;
     const T slip2 = dot(slip, slip);
-    const T grip = min(soil[friction<Dim>] * (rise + contact) * inverse_length(slip2), soil[density<Dim>] * T(per_step) * height);
+    const T grip = min(soil[slot::friction<Dim>] * (rise + contact) * inverse_length(slip2), soil[slot::density<Dim>] * T(per_step) * height);
     f += (sticking * grip * r_n) * slip;
     // Dissipation along the normal (Eqs. 54, 69): U_L - U_R = -2 (v - v_wall) . n.
-    const T closing = max(T(0), T(2) * dot(wall.vec(wall_slot::velocity) - soil.vec(velocity), n));
-    const T beta = min(T(limiter) * soil[density<Dim>] / max(T(1e-30), soil[impedance<Dim>]) * closing, T(1));
-    return gradient * f - (beta * soil[impedance<Dim>] * closing * gradient * length(r2)) * n;
+    const T closing = max(T(0), T(2) * dot(wall.vec(wall_slot::velocity) - soil.vec(slot::velocity), n));
+    const T beta = min(T(limiter) * soil[slot::density<Dim>] / max(T(1e-30), soil[slot::impedance<Dim>]) * closing, T(1));
+    return gradient * f - (beta * soil[slot::impedance<Dim>] * closing * gradient * length(r2)) * n;
   }
 };
 

@@ -1,6 +1,7 @@
 #include "materials/soil.h"
 
 #include <cmath>
+#include <utility>
 
 #include "deck/registry.h"
 
@@ -25,8 +26,12 @@ Schema<Soil> Soil::schema() {
       .choices({"deformable", "fixed", "prescribed"});
   s.check([](Soil& m, CheckContext& c) {
     if (m.elastic()) {
-      for (const char* key : {"friction_angle", "friction", "cohesion", "saturated_cohesion", "dilation_angle"})
-        if (c.given(key)) c.error(key, std::string("'") + key + "' has no meaning without plasticity", "leave it out, or leave 'plasticity: none' out");
+      // By value: a resolved deck, which a run may be made of again, names every key.
+      const std::pair<const char*, bool> plastic[] = {{"friction_angle", m.friction_angle.has_value()}, {"friction", m.friction.has_value()},
+                                                      {"cohesion", m.cohesion != 0}, {"saturated_cohesion", m.saturated_cohesion.has_value()},
+                                                      {"dilation_angle", m.dilation_angle != 0}};
+      for (const auto& [key, set] : plastic)
+        if (set) c.error(key, std::string("'") + key + "' has no meaning without plasticity", "leave it out, or leave 'plasticity: none' out");
       return;
     }
     if (m.friction_angle && m.friction)
