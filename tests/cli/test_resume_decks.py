@@ -34,6 +34,7 @@ SETTINGS = {
 }
 ALSO = [
     ("decks/basics/still_water.yaml", ["dimension=3", "resolution=depth/8"]),
+    ("decks/basics/column_collapse.yaml", ["dimension=3", "resolution=width/8", "numerics.pair_precision=double"]),
     ("decks/basics/dam_break.yaml", ["dimension=3", "resolution=L/8", "numerics.pair_precision=double"]),
 ]
 
@@ -75,7 +76,8 @@ class Case:
         whole = self.run("whole", "--threads", 1)
         total = whole["steps"]["advection"]
         frames = len(list((self.folder / "whole" / "frames").glob("*.vtu")))
-        if total < PIECES or frames < 2:
+        # A scene of material points only has no particles and no frames.
+        if total < PIECES or (frames < 2 and any(whole["particles"].values())):
             raise Wrong(f"{total} steps and {frames} frames are too few to compare anything")
         self.run("threads", "--threads", 2)
         self.compare("threads", "1 and 2 threads")
