@@ -10,11 +10,12 @@ namespace sphgeo {
 
 /// One-sided Riemann problem between a soil particle and a wall particle.
 ///
-/// The wall carries the stress of the soil particle (Eq. 69), plus the imaginary pressure of Eq. 95 by
-/// which the wall holds the soil up: without it the soil at a floor would bear half a spacing too
-/// little, and soil beside a smooth wall would lose half of the vertical gradient of its stress and
-/// sink. Signs and the part along the wall are those of the water (see WallPair). A wall that lets the
-/// soil slide bears no shear stress.
+/// The wall carries the stress of the soil particle (Eq. 69), with the correction B of its gradient, along the
+/// normal; a wall that lets the soil slide bears no shear stress. What of the gradient runs along the wall comes from
+/// the soil alone, and B makes up for the half that the wall does not give. So this force, too, is the adjoint of what the
+/// wall adds to the velocity gradient (see StressPair). To it comes the imaginary pressure of Eq. 95 by which the wall
+/// holds the soil up (the sign as for water, see WallPair): without it the soil at a floor would bear half a
+/// spacing too little.
 template <int Dim>
 struct SoilWallPair {
   Kernel<Dim> kernel;

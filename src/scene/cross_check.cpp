@@ -137,6 +137,14 @@ void check_probes(const World<Dim>& world, Diagnostics& found) {
   }
 }
 
+// Soil and water in one scene pass through each other: no effect couples them yet.
+template <int Dim>
+void check_coupling(const World<Dim>& world, Diagnostics& found) {
+  if (!world.find("soil") || !world.find("water")) return;
+  found.warning("W130", world.model().place_of("bodies"), "bodies", "water and soil do not act on each other",
+                "each of them moves as if the other were not there; run them in scenes of their own");
+}
+
 void check_shapes(const Model& model, Diagnostics& found) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     CheckContext context(found, model.places, fmt::format("bodies[{}].shape", b), model.dimension, model.resolution);
@@ -154,6 +162,7 @@ void check_scene(const Scene<Dim>& scene, Diagnostics& found) {
     check_bodies_overlap(world, phase, found);
     check_in_walls(world, phase, found);
   }
+  check_coupling(world, found);
   check_lengths(world, found);
   check_probes(world, found);
   check_walls(scene, found);

@@ -165,4 +165,23 @@ TEST_SUITE("scene") {
       CHECK((rig.water().vector(fields::velocity)[i] - (i < 16 ? Vec<2>(1, 2 * z) : Vec<2>(0, 0))).norm() < 1e-14);
     }
   }
+TEST_CASE("soil and water in one scene: a warning that they do not act on each other") {
+  const Model model = read_deck_text(R"(
+dimension: 2
+resolution: 0.05
+end_time: 1
+materials:
+  - {name: water, type: water, max_speed: 5}
+  - {name: sand, type: soil, density: 2600, volume_fraction: 0.6, youngs_modulus: 5e6, friction_angle: 30 deg}
+bodies:
+  - {name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [0.5, 0.2, 0.3]}}
+  - {name: bank, material: sand, shape: {type: box, min: [0.5, 0, 0], max: [1, 0.2, 0.3]}}
+)", {}, "deck", SPHGEO_SOURCE_DIR);
+  Diagnostics found;
+  const Scene<2> scene = build_scene<2>(model, found);
+  check_scene(scene, found);
+  REQUIRE(found.items().size() == 1);
+  CHECK(found.items()[0].id == "W130");
+}
+
 }
