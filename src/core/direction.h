@@ -14,7 +14,9 @@ inline Vec3 direction_of(const Vec3& a) {
   if (!(largest > 0)) return Vec3::Zero();
   const double square = a.squaredNorm();
   if (std::abs(square - 1) < 2e-15) return a;
-  return std::isnormal(square) ? Vec3(a.normalized()) : Vec3((a / largest).normalized());
+  const Vec3 unit = std::isnormal(square) ? Vec3(a.normalized()) : Vec3((a / largest).normalized());
+  // Components that have lost digits near zero turn nothing.
+  return unit.unaryExpr([](double u) { return std::isnormal(u) ? u : 0.0; });
 }
 
 }  // namespace sphgeo
