@@ -123,6 +123,7 @@ def kill(t, rng, kills):
         if process.returncode != DONE:
             t.fail(f"after {done} kills: exit {process.returncode}, said: {said}")
             return
+        t.run(out, "--resume")  # writes the resolved deck with its own interval of checkpoints
         t.same(out, f"killed {done} times")
         checks += 1
         out = t.fresh("killed")
