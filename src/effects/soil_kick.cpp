@@ -47,11 +47,11 @@ class SoilKick final : public Effect<Dim> {
       using T = decltype(number);
       auto& records = world.records("soil", 0).template get<T>();
       parallel_for(soil_->size(), [&](Index i) {
-        if (parts[part[i]].material->moves_by_forces()) {
+        if (parts[part[i]].moves) {
           a[i] = (*sum)[i];
           v[i] += dt * a[i];
           x[i] += 0.5 * dt * v[i];
-        } else if (parts[part[i]].material->skeleton == "fixed") {
+        } else if (parts[part[i]].fixed) {
           a[i].setZero();
         } else {
           follow(world.model().bodies[static_cast<std::size_t>(part[i])], dt, x[i], v[i], a[i]);
@@ -72,7 +72,8 @@ class SoilKick final : public Effect<Dim> {
     const auto& v = soil_->vector(fields::velocity);
     const double speed = std::sqrt(block_max(soil_->size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
     limits.note_speed("soil", speed / sound);
-    const double acoustic = n.cfl_acoustic * h / (sound + speed);  // Eq. 92
+    // Eq. 92, with the compression wave: it is faster than the c_0 of Eq. 53, up to 1.7 times at nu = 0.
+    const double acoustic = n.cfl_acoustic * h / (sound + speed);
     limits.acoustic = std::min(limits.acoustic, acoustic);
     // Eq. 91; at rest the acoustic step bounds it, as for water.
     limits.advection = std::min(limits.advection, std::min(n.advection_ratio_max * acoustic, n.cfl_advection * h / std::max(speed, 1e-300)));

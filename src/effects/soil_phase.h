@@ -16,6 +16,8 @@ namespace sphgeo {
 /// Parameters of one part (body) of the soil, SI.
 struct SoilPart {
   const Soil* material = nullptr;  ///< null for a body that is no soil
+  bool moves = false;              ///< by forces
+  bool fixed = false;              ///< never moves
   double grain_density = 0;        ///< rho^s
   double density = 0;              ///< rho_0 of the skeleton: rho^s times its mean volume fraction at t = 0
   double sound_speed = 0;          ///< c_0 of Eq. 53
@@ -41,6 +43,8 @@ struct SoilParts {
       SoilPart part;
       part.material = dynamic_cast<const Soil*>(world.model().material(world.model().bodies[b].material));
       if (part.material) {
+        part.moves = part.material->moves_by_forces();
+        part.fixed = part.material->skeleton == "fixed";
         part.grain_density = part.material->density;
         part.density = soil.constant("density." + std::to_string(b));
         part.sound_speed = std::sqrt(part.material->bulk_modulus() / part.density);
@@ -49,8 +53,8 @@ struct SoilParts {
         part.wet_strength = part.material->constants(1.0).strength;
         if (!first.material) first = part;
         uniform = uniform && part.density == first.density && part.sound_speed == first.sound_speed;
-        deformable = deformable || part.material->moves_by_forces();
-        if (part.material->moves_by_forces()) {
+        deformable = deformable || part.moves;
+        if (part.moves) {
           fastest = std::max(fastest, part.sound_speed);
           fastest_wave = std::max(fastest_wave, std::sqrt(part.material->oedometric_modulus() / part.density));
         }

@@ -164,7 +164,7 @@ class SoilReinitialization final : public Effect<Dim> {
       });
       gather<NearSurface<Dim>::template Sums>(
           world.list("soil", "soil"), records, records, NearSurface<Dim>{Kernel<Dim>(h)}, [&](Index i, const auto& near) {
-            if (surface[i] || near.share > 0 || !parts[part[i]].material->moves_by_forces()) return;
+            if (surface[i] || near.share > 0 || !parts[part[i]].moves) return;
             x[i] -= factor * around_[static_cast<std::size_t>(i)].gradient;
           });
     });

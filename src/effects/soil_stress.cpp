@@ -133,7 +133,8 @@ class SoilStress final : public Effect<Dim> {
     const double dt = world.clock.dt_acoustic;
     // Soil that is packed closer than it was at t = 0, more than its pressure tells, meets the missing compression over the
     // time in which sound passes 20 smoothing lengths. The rates alone lose sight of it: they see the smooth part of the motion,
-    // and sand that has flowed would end 20 to 40 % denser than it started.
+    // and sand that has flowed would end 20 to 40 % denser than it started. Margin and time are chosen: slow against sound, fast against
+    // the flow.
     const Field<double>* crowding = crowded_ ? &soil_->scalar(fields::crowding) : nullptr;
     const double per_time = parts.fastest / (20 * soil_->smoothing_length());
     const bool corrected = world.model().numerics.soil_velocity_gradient == "corrected";
