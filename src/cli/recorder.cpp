@@ -368,6 +368,9 @@ std::vector<LedgerRow> Recorder<Dim>::ledger() const {
   std::vector<LedgerRow> rows{{"mass", "kg", {a.mass}, {b.mass}, {}, relative(b.mass - a.mass, a.mass)},
           {"momentum", "kg m/s", list(a.momentum), list(b.momentum), {}, relative((vec(b.momentum) - vec(a.momentum)).norm(), a.mass * speed)},
           {"energy", "J", {energy_a}, {energy_b}, {}, relative(energy_b - energy_a, energy_scale)}};
+  std::vector<Tally> tallies;
+  for (const auto& e : plan_.effects()) e.effect->tally(tallies);
+  for (const Tally& t : tallies) rows.push_back({t.name, t.unit, {}, {t.value}, {}, 0.0});
   if (world_.find("soil")) rows.push_back({"dissipated", "J", {a.dissipated}, {b.dissipated}, {}, relative(b.dissipated - a.dissipated, energy_scale)});
   return rows;
 }

@@ -16,8 +16,12 @@ Schema<Body> Body::schema() {
   s.optional("velocity", &Body::velocity, unit::speed, "initial velocity, formulas of x, y, z")
       .only_of("xyz");
   s.optional("pressure", &Body::pressure, unit::pressure,
-             "initial pressure: zero, hydrostatic below 'level', or a formula of x, y, z")
-      .choices({"zero", "hydrostatic"})
+             "initial pressure: zero, hydrostatic below 'level', hydraulic_head: that of the 'head', or a formula "
+             "of x, y, z")
+      .choices({"zero", "hydrostatic", "hydraulic_head"})
+      .only_of("xyz");
+  s.optional("head", &Body::head, unit::length,
+             "hydraulic head for pressure: hydraulic_head, the z to which the water would rise, a formula of x, y, z")
       .only_of("xyz");
   s.optional("level", &Body::level, unit::length,
              "z of the free surface for hydrostatic pressure; auto: the top of the body");
@@ -49,6 +53,9 @@ Schema<Body> Body::schema() {
       c.error("level", "'level' has no meaning unless pressure is hydrostatic",
               "set pressure: hydrostatic (of water) or stress: geostatic (of soil), or leave 'level' out");
     }
+    if (b.head.has_value() != (b.pressure.word == "hydraulic_head"))
+      c.error("head", b.head ? "'head' has no meaning unless pressure is hydraulic_head" : "pressure: hydraulic_head needs a 'head'",
+              "give both, as in 'pressure: hydraulic_head' and 'head: 1.5 m', or none of them");
     if (b.stress_tensor && b.stress != "zero")
       c.error("stress_tensor", "the initial stress is given twice", "give stress or stress_tensor, not both");
     if (b.lateral_stress_ratio && b.stress != "geostatic")
@@ -89,8 +96,30 @@ Schema<Numerics> Numerics::schema() {
       .at_most(1)
       .equation("Eq. 87");
   s.optional("density_reinitialization", &Numerics::density_reinitialization, unit::none,
-             "summation: density from the sum over neighbors at each advection step; none: never")
-      .choices({"summation", "none"});
+             "summation: density from the sum over neighbors at each advection step; shepard: density smoothed by a "
+             "first-order consistent filter at each advection step; none: never")
+      .choices({"summation", "shepard", "none"});
+  s.optional("pore_water", &Numerics::pore_water, unit::none,
+             "water in soil: equal_mass: particles of one mass, whose volume follows the porosity; variable_mass: as well, but at t = 0 "
+             "particles of one volume, whose mass follows the porosity (Zhu et al.); constant_volume: the volume ignores the porosity "
+             "(Bui et al.)")
+      .choices({"equal_mass", "variable_mass", "constant_volume"})
+      .equation("Eq. 27");
+  s.optional("water_fraction_floor", &Numerics::water_fraction_floor, unit::none,
+             "least share of the volume that is left to water where soil is dense; particles that meet it are counted")
+      .above(0)
+      .below(1)
+      .equation("Eq. 56");
+  s.optional("transport_target_volume", &Numerics::transport_target_volume, unit::none,
+             "whether the shift of water in soil keeps the spacing that the porosity asks for")
+      .equation("Eq. 88");
+  s.optional("transport_projection", &Numerics::transport_projection, unit::none,
+             "whether the shift leaves out its part along a steep gradient of porosity")
+      .equation("Eq. 89");
+  s.optional("transport_projection_threshold", &Numerics::transport_projection_threshold, unit::none,
+             "gradient of the water fraction, per smoothing length, from which on the projection acts")
+      .above(0)
+      .equation("Eq. 89");
   s.optional("transport_velocity", &Numerics::transport_velocity, unit::none,
              "whether inner particles are shifted to an even spacing");
   s.optional("transport_at_surface", &Numerics::transport_at_surface, unit::none,

@@ -23,7 +23,8 @@ struct Body {
   std::shared_ptr<const Shape> shape;
   std::string filling = "lattice";        ///< lattice | relaxed
   std::array<Expression, 3> velocity;     ///< initial, m/s
-  WordOrExpression pressure{"zero", {}};  ///< initial: zero | hydrostatic | a formula (Pa)
+  WordOrExpression pressure{"zero", {}};  ///< initial: zero | hydrostatic | hydraulic_head | a formula (Pa)
+  std::optional<Expression> head;         ///< z to which the water would rise, for hydraulic_head, m
   std::optional<double> level;  ///< z of the free surface for hydrostatic; empty: the body's top
   std::string stress = "zero";  ///< of soil, initial: zero | geostatic
   std::optional<std::vector<Expression>> stress_tensor;  ///< of soil, initial: xx, yy, zz, xy, yz, xz, Pa
@@ -43,7 +44,7 @@ struct Numerics {
   double advection_ratio_max = 5.5;
   double limiter = 3.0;                                ///< Eq. 63, water
   double transport_coefficient = 0.2;                  ///< alpha of Eq. 87
-  std::string density_reinitialization = "summation";  ///< summation | none
+  std::string density_reinitialization = "summation";  ///< summation | shepard | none
   bool transport_velocity = true;
   std::string transport_at_surface = "none";   ///< none | tangential
   std::optional<double> h_factor_water;  ///< h / dp; empty: 1.8
@@ -53,6 +54,11 @@ struct Numerics {
   std::string soil_velocity_gradient = "corrected";  ///< corrected | plain sum of Eq. 55
   std::string volume_fraction_reinitialization = "summation";  ///< summation | none
   bool transport_velocity_soil = false;  ///< Eq. 87 for soil
+  std::string pore_water = "equal_mass";  ///< equal_mass | variable_mass | constant_volume, of water in soil
+  double water_fraction_floor = 0.05;     ///< least n^w of Eq. 56
+  bool transport_target_volume = true;    ///< V^tar of Eq. 88, or the volume at rest of clear water (Eq. 87)
+  bool transport_projection = true;       ///< P^p of Eq. 88
+  double transport_projection_threshold = 0.1;  ///< gamma_p of Eq. 89
   double max_lost_fraction = 0.01;
   double density_bound = 0.5;            ///< largest |rho / rho0 - 1| before the guard stops the run
   std::string outside = "remove";  ///< remove | stop

@@ -42,6 +42,10 @@ inline constexpr Unit frequency{0, 0, -1, false, "Hz"};
 inline constexpr Unit rate{0, 0, -1, false, "1/s"};
 inline constexpr Unit energy{2, 1, -2, false, "J"};
 inline constexpr Unit inertia{2, 1, 0, false, "kg m2"};
+inline constexpr Unit force_density{-2, 1, -2, false, "N/m3"};
+inline constexpr Unit inverse_mass{0, -1, 0, false, "1/kg"};
+inline constexpr Unit drag_linear{-3, 1, -1, false, "N s/m4"};
+inline constexpr Unit drag_quadratic{-4, 1, 0, false, "N s2/m5"};
 inline constexpr Unit flow_rate{3, 0, -1, false, "m3/s"};
 }  // namespace unit
 

@@ -77,6 +77,14 @@ struct FieldBound {
   std::string cause;  ///< what to look for when it is left
 };
 
+/// What an effect counts beside its fields, for the ledger.
+struct Tally {
+  std::string name;
+  std::string unit;
+  std::string sentence;
+  double value = 0;
+};
+
 template <int Dim>
 class Effect {
  public:
@@ -90,6 +98,8 @@ class Effect {
   virtual void limit(const World<Dim>&, StepLimits&) const {}
   /// Adds what the guard is to watch.
   virtual void bounds(const World<Dim>&, std::vector<FieldBound>&) const {}
+  /// Adds what the effect has counted.
+  virtual void tally(std::vector<Tally>&) const {}
   /// Memory that the effect keeps beside fields and lists [bytes].
   virtual std::size_t bytes() const { return 0; }
 };

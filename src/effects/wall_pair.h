@@ -45,9 +45,26 @@ struct WallPair {
     return wall[wall_slot::push] * max(T(0), r_n);
   }
 
+  /// Friction of the wall on the water per unit volume of the water.
+  template <class T>
+  LaneVec<Dim, T> friction(const Record<Dim, T, 2>& water, const Record<Dim, T, 2>& wall, const T& r2) const {
+    const LaneVec<Dim, T> dv = water.vec(water_slot::velocity) - wall.vec(wall_slot::velocity);
+    const T gradient = kernel.dw_over_r(r2) * wall[wall_slot::volume];
+    return (T(two_eta) * T(2) * wall[wall_slot::no_slip] * gradient * r2 / (r2 + T(softening))) * dv;
+  }
+
   /// Force of the wall on the water per unit volume of the water; r = r_water - r_wall.
   template <class T>
   LaneVec<Dim, T> force(const Record<Dim, T, 2>& water, const Record<Dim, T, 2>& wall,
+                        const LaneVec<Dim, T>& r, const T& r2) const {
+    LaneVec<Dim, T> f = pressure(water, wall, r, r2);
+    f += friction(water, wall, r2);
+    return f;
+  }
+
+  /// The part of it that is pressure.
+  template <class T>
+  LaneVec<Dim, T> pressure(const Record<Dim, T, 2>& water, const Record<Dim, T, 2>& wall,
                         const LaneVec<Dim, T>& r, const T& r2) const {
     const LaneVec<Dim, T> n = wall.vec(wall_slot::normal);
     const LaneVec<Dim, T> dv = water.vec(water_slot::velocity) - wall.vec(wall_slot::velocity);
@@ -60,7 +77,6 @@ struct WallPair {
     const T dissipation = riemann.dissipation(T(-2) * dot(dv, n));
     LaneVec<Dim, T> f = (T(-1) * pressures * gradient) * r;
     f -= (dissipation * gradient * length(r2)) * n;
-    f += (T(two_eta) * T(2) * wall[wall_slot::no_slip] * gradient * r2 / (r2 + T(softening))) * dv;
     return f;
   }
 

@@ -55,9 +55,11 @@ class WallReaction final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& second = world.records("water", 1).template get<T>();
+      const Field<Vec<Dim>>* drag = water_->has(fields::drag_acceleration) ? &water_->vector(fields::drag_acceleration) : nullptr;
       parallel_for(water_->size(), [&](Index i) {
         T* slot = second[i] - record_size;
-        const Vec<Dim> pull = world.pull(x[i]) - a[i];
+        Vec<Dim> pull = world.pull(x[i]) - a[i];
+        if (drag) pull += (*drag)[i];
         for (int k = 0; k < Dim; ++k) slot[water_slot::pull + k] = static_cast<T>(pull[k]);
         slot[water_slot::density] = static_cast<T>(rho[i]);
       });

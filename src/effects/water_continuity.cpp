@@ -5,16 +5,22 @@ namespace sphgeo {
 namespace {
 
 /// Divergence and density dissipation between two water particles.
-template <int Dim>
+template <int Dim, bool Porous>
 struct ContinuityPair {
   Kernel<Dim> kernel;
   double inverse_impedance;  ///< 1 / (rho0 c0)
   Vec<Dim> weight;           ///< rho0 g
 
   template <class T>
-  struct Sums {
+  struct Clear {
     T divergence{};  ///< with the Riemann dissipation, 1/s
   };
+  template <class T>
+  struct Pores {
+    T divergence{}, dissipation{};  ///< 1/s
+  };
+  template <class T>
+  struct Sums : std::conditional_t<Porous, Pores<T>, Clear<T>> {};
 
   template <class T>
   void operator()(Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T>& j,
@@ -29,11 +35,16 @@ struct ContinuityPair {
     T jump = i[pressure] - j[pressure];
     for (int k = 0; k < Dim; ++k) jump -= T(weight[k]) * r[k];
     const T dissipation = jump * T(inverse_impedance) * length(r2);
-    sum.divergence += (dv_r + dissipation) * gradient;
+    if constexpr (Porous) {
+      sum.divergence += dv_r * gradient;
+      sum.dissipation += dissipation * gradient;
+    } else {
+      sum.divergence += (dv_r + dissipation) * gradient;
+    }
   }
 };
 
-/// Rate of density of the water (Eq. 58 with n^w = 1).
+/// Rate of density of the water (Eq. 58). Where soil is, the records hold the velocity of the mixture (see SoilVelocity).
 template <int Dim>
 class WaterContinuity final : public Effect<Dim> {
  public:
@@ -42,13 +53,20 @@ class WaterContinuity final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
-    return {std::make_unique<WaterContinuity>(), "there is water"};
+    return {std::make_unique<WaterContinuity>(volume_follows_porosity(world)), "there is water"};
   }
+
+  explicit WaterContinuity(bool porous) : porous_(porous) {}
 
   std::string acts_on() const override { return "water"; }
   Needs needs() const override {
-    return {{{"water", &fields::density, Access::read}, {"water", &fields::density_rate, Access::write}},
+    Needs n{{{"water", &fields::density, Access::read}, {"water", &fields::density_rate, Access::write}},
             {{"water", "water"}}};
+    if (porous_) {
+      n.fields.push_back({"water", &fields::water_fraction, Access::read});
+      n.fields.push_back({"water", &fields::soil_velocity, Access::read});
+    }
+    return n;
   }
 
   void prepare(World<Dim>& world) override {
@@ -58,18 +76,27 @@ class WaterContinuity final : public Effect<Dim> {
   }
 
   void apply(World<Dim>& world) override {
-    const WaterConstants w = WaterConstants::of(world);
-    const ContinuityPair<Dim> pair{Kernel<Dim>(world.set("water").smoothing_length()), 1 / (w.density * w.sound_speed),
-                                   w.density * world.gravity()};
-    world.with_pair_precision([&](auto number) {
-      const auto& records = world.records("water").template get<decltype(number)>();
-      gather<ContinuityPair<Dim>::template Sums>(
-          world.list("water", "water"), records, records, pair,
-          [&](Index i, const auto& sum) { (*rate_)[i] = (*density_)[i] * sum.divergence; });
-    });
+    if (porous_) run<true>(world);
+    else run<false>(world);
   }
 
  private:
+  template <bool Porous>
+  void run(World<Dim>& world) {
+    using Pair = ContinuityPair<Dim, Porous>;
+    const WaterConstants w = WaterConstants::of(world);
+    const Pair pair{Kernel<Dim>(world.set("water").smoothing_length()), 1 / (w.density * w.sound_speed), w.density * world.gravity()};
+    const Field<double>* n = volume_share(world);
+    world.with_pair_precision([&](auto number) {
+      const auto& records = world.records("water").template get<decltype(number)>();
+      gather<Pair::template Sums>(world.list("water", "water"), records, records, pair, [&](Index i, const auto& sum) {
+        if constexpr (Porous) (*rate_)[i] = (*density_)[i] * (sum.divergence / (*n)[i] + sum.dissipation);
+        else (*rate_)[i] = (*density_)[i] * sum.divergence;
+      });
+    });
+  }
+
+  bool porous_;
   Field<double>* density_ = nullptr;
   Field<double>* rate_ = nullptr;
 };

@@ -4,8 +4,8 @@
 namespace sphgeo {
 namespace {
 
-/// Pressure and viscosity between two water particles.
-template <int Dim, bool Viscous>
+/// Pressure and viscosity between two water particles. In pores, the pressure force is also that on the soil, and its sum is kept apart.
+template <int Dim, bool Viscous, bool Porous>
 struct MomentumPair {
   Kernel<Dim> kernel;
   RiemannFlux riemann;
@@ -13,9 +13,15 @@ struct MomentumPair {
   double softening; ///< 0.01 h^2
 
   template <class T>
-  struct Sums {
+  struct Clear {
     LaneVec<Dim, T> force{};  ///< per unit volume
   };
+  template <class T>
+  struct Pores {
+    LaneVec<Dim, T> force{}, friction{};
+  };
+  template <class T>
+  struct Sums : std::conditional_t<Porous && Viscous, Pores<T>, Clear<T>> {};
 
   template <class T>
   void operator()(Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T>& j,
@@ -27,12 +33,15 @@ struct MomentumPair {
     const T gradient = kernel.dw_over_r(r2) * j[volume];
     const T two_p_star = i[pressure] + j[pressure] + riemann.dissipation(approach);
     sum.force -= (two_p_star * gradient) * r;
-    if constexpr (Viscous)
+    // (n_i + n_j) V_j / n_i of Eq. 60, by Eq. 27 for equal masses.
+    if constexpr (Viscous && Porous)
+      sum.friction += (T(0.5 * two_eta) * (gradient + kernel.dw_over_r(r2) * i[volume]) * r2 / (r2 + T(softening))) * dv;
+    else if constexpr (Viscous)
       sum.force += (T(two_eta) * gradient * r2 / (r2 + T(softening))) * dv;
   }
 };
 
-/// Momentum of the water: gravity, pressure by the Riemann flux, and viscosity (Eq. 60 with n^w = 1).
+/// Momentum of the water: gravity, pressure by the Riemann flux, and viscosity (Eq. 60).
 /// It sets the sum of accelerations to which all other forces on the water are added.
 template <int Dim>
 class WaterMomentum final : public Effect<Dim> {
@@ -43,15 +52,19 @@ class WaterMomentum final : public Effect<Dim> {
   static Binding<Dim> bind(const World<Dim>& world) {
     const ParticleSet<Dim>* water = world.find("water");
     if (!water) return {"there is no water"};
-    return {std::make_unique<WaterMomentum>(),
+    return {std::make_unique<WaterMomentum>(world.find("soil") != nullptr),
             water->constant("viscosity") > 0 ? "there is water" : "there is water; inviscid: no viscous term"};
   }
 
+  explicit WaterMomentum(bool porous) : porous_(porous) {}
+
   std::string acts_on() const override { return "water"; }
   Needs needs() const override {
-    return {{{"water", &fields::density, Access::read}, {"water", &fields::pressure, Access::read},
+    Needs n{{{"water", &fields::density, Access::read}, {"water", &fields::pressure, Access::read},
              {"water", &fields::acceleration_sum, Access::write}},
             {{"water", "water"}}};
+    if (porous_) n.fields.push_back({"water", &fields::pressure_force, Access::write});
+    return n;
   }
 
   void prepare(World<Dim>& world) override {
@@ -61,27 +74,33 @@ class WaterMomentum final : public Effect<Dim> {
   }
 
   void apply(World<Dim>& world) override {
-    if (WaterConstants::of(world).viscosity > 0) run<true>(world);
-    else run<false>(world);
+    const bool viscous = WaterConstants::of(world).viscosity > 0;
+    if (porous_) viscous ? run<true, true>(world) : run<false, true>(world);
+    else viscous ? run<true, false>(world) : run<false, false>(world);
   }
 
  private:
-  template <bool Viscous>
+  template <bool Viscous, bool Porous>
   void run(World<Dim>& world) {
-    using Pair = MomentumPair<Dim, Viscous>;
+    using Pair = MomentumPair<Dim, Viscous, Porous>;
     const WaterConstants w = WaterConstants::of(world);
     const double h = world.set("water").smoothing_length();
     const Vec<Dim> g = world.gravity();
     const Pair pair{Kernel<Dim>(h), RiemannFlux(w), 2 * w.viscosity, 0.01 * h * h};
+    Field<Vec<Dim>>* pressure_force = Porous ? &world.set("water").vector(fields::pressure_force) : nullptr;
     world.with_pair_precision([&](auto number) {
       const auto& records = world.records("water").template get<decltype(number)>();
       gather<Pair::template Sums>(world.list("water", "water"), records, records, pair,
                                   [&](Index i, const auto& sum) {
-                                    (*acceleration_)[i] = g + to_vec(sum.force) / (*density_)[i];
+                                    Vec<Dim> force = to_vec(sum.force);
+                                    if constexpr (Porous) (*pressure_force)[i] = force;
+                                    if constexpr (Porous && Viscous) force += to_vec(sum.friction);
+                                    (*acceleration_)[i] = g + force / (*density_)[i];
                                   });
     });
   }
 
+  bool porous_;
   Field<double>* density_ = nullptr;
   Field<Vec<Dim>>* acceleration_ = nullptr;
 };

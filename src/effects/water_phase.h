@@ -1,6 +1,7 @@
 #pragma once
 // What the effects of the water phase share: constants, record layout, the Riemann flux.
 
+#include "effects/effect.h"
 #include "sph/gather.h"
 #include "sph/kernel.h"
 #include "sph/world.h"
@@ -21,6 +22,24 @@ struct WaterConstants {
             world.model().numerics.limiter};
   }
 };
+
+/// Whether the volume of the water follows the porosity of soil (Eq. 27).
+template <int Dim>
+bool volume_follows_porosity(const World<Dim>& world) {
+  return world.find("soil") && world.model().numerics.pore_water != "constant_volume";
+}
+
+/// n^w of the water (Eq. 27); null where its volume does not follow it.
+template <int Dim>
+const Field<double>* volume_share(const World<Dim>& world) {
+  return volume_follows_porosity(world) ? &world.set("water").scalar(fields::water_fraction) : nullptr;
+}
+
+/// Names the need of volume_share(), where there is one.
+template <int Dim>
+void need_volume_share(const World<Dim>& world, Needs& needs) {
+  if (volume_follows_porosity(world)) needs.fields.push_back({"water", &fields::water_fraction, Access::read});
+}
 
 /// Slots of a water record behind the position.
 namespace water_slot {

@@ -14,12 +14,14 @@ class WaterPredict final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
-    return {std::make_unique<WaterPredict>(), "there is water"};
+    return {std::make_unique<WaterPredict>(world), "there is water"};
   }
+
+  explicit WaterPredict(const World<Dim>& world) { need_volume_share(world, volume_); }
 
   std::string acts_on() const override { return "water"; }
   Needs needs() const override {
-    return {{{"water", &fields::density, Access::update},
+    Needs n{{{"water", &fields::density, Access::update},
              {"water", &fields::position, Access::update},
              {"water", &fields::density_rate, Access::read},
              {"water", &fields::velocity, Access::read},
@@ -27,6 +29,8 @@ class WaterPredict final : public Effect<Dim> {
              {"water", &fields::pressure, Access::write},
              {"water", &fields::volume, Access::write}},
             {}};
+    n.fields.insert(n.fields.end(), volume_.fields.begin(), volume_.fields.end());
+    return n;
   }
 
   void prepare(World<Dim>& world) override {
@@ -44,6 +48,7 @@ class WaterPredict final : public Effect<Dim> {
     const auto& rate = water_->scalar(fields::density_rate);
     const auto& v = water_->vector(fields::velocity);
     const auto& m = water_->scalar(fields::mass);
+    const Field<double>* share = volume_share(world);
     const bool repack = !world.frozen_geometry();
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
@@ -52,7 +57,7 @@ class WaterPredict final : public Effect<Dim> {
         rho[i] += half * rate[i];
         x[i] += half * v[i];
         p[i] = c2 * (rho[i] - w.density);
-        volume[i] = m[i] / rho[i];
+        volume[i] = m[i] / (share ? (*share)[i] * rho[i] : rho[i]);
         T* slot = records[i];
         slot[water_slot::volume] = static_cast<T>(volume[i]);
         slot[water_slot::pressure] = static_cast<T>(p[i]);
@@ -69,6 +74,7 @@ class WaterPredict final : public Effect<Dim> {
   }
 
  private:
+  Needs volume_;  // what the volume needs beside mass and density
   ParticleSet<Dim>* water_ = nullptr;
 };
 

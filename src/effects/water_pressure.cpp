@@ -14,13 +14,17 @@ class WaterPressure final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
-    return {std::make_unique<WaterPressure>(), "there is water"};
+    return {std::make_unique<WaterPressure>(world), "there is water"};
   }
+
+  explicit WaterPressure(const World<Dim>& world) { need_volume_share(world, volume_); }
 
   std::string acts_on() const override { return "water"; }
   Needs needs() const override {
-    return {{{"water", &fields::density, Access::read}, {"water", &fields::mass, Access::read},
+    Needs n{{{"water", &fields::density, Access::read}, {"water", &fields::mass, Access::read},
              {"water", &fields::pressure, Access::write}, {"water", &fields::volume, Access::write}}, {}};
+    n.fields.insert(n.fields.end(), volume_.fields.begin(), volume_.fields.end());
+    return n;
   }
   void prepare(World<Dim>& world) override { water_ = &world.set("water"); }
   void apply(World<Dim>& world) override {
@@ -30,12 +34,13 @@ class WaterPressure final : public Effect<Dim> {
     const auto& rho = water_->scalar(fields::density);
     const auto& m = water_->scalar(fields::mass);
     const auto& v = water_->vector(fields::velocity);
+    const Field<double>* share = volume_share(world);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& records = world.records("water").template get<T>();
       parallel_for(water_->size(), [&](Index i) {
         p[i] = w.sound_speed * w.sound_speed * (rho[i] - w.density);
-        volume[i] = m[i] / rho[i];
+        volume[i] = m[i] / (share ? (*share)[i] * rho[i] : rho[i]);
         // Pair sums of the observation, such as the force on a wall, read the records.
         T* slot = records[i];
         slot[water_slot::volume] = static_cast<T>(volume[i]);
@@ -46,6 +51,7 @@ class WaterPressure final : public Effect<Dim> {
   }
 
  private:
+  Needs volume_;  // what the volume needs beside mass and density
   ParticleSet<Dim>* water_ = nullptr;
 };
 

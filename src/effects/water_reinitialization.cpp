@@ -10,27 +10,37 @@
 namespace sphgeo {
 namespace {
 
-/// The sums that say how the particles lie: number density, its gradient, divergence of position.
-template <int Dim>
+/// The sums that say how the particles lie: number density, its gradient, divergence of position; in soil also the gradient
+/// of the water fraction (Eq. 89).
+template <int Dim, bool Porous>
 struct ArrangementPair {
   Kernel<Dim> kernel;
 
   template <class T>
-  struct Sums {
+  struct Clear {
     T number{};                    ///< sum of W V
     LaneVec<Dim, T> gradient{};    ///< sum of grad W V
     T moment[Dim][Dim] = {};       ///< sum of r (x) grad W V
   };
+  template <class T>
+  struct Pores : Clear<T> {
+    LaneVec<Dim, T> fraction{};    ///< q: sum of (n_j - n_i) grad W V
+  };
+  template <class T>
+  struct Sums : std::conditional_t<Porous, Pores<T>, Clear<T>> {};
+  static constexpr int fraction = 7;  ///< slot of n^w in the first record while this pass runs
 
   template <class T, int N, int M>
-  void operator()(Sums<T>& sum, const Record<Dim, T, N>&, const Record<Dim, T, M>& j,
+  void operator()(Sums<T>& sum, const Record<Dim, T, N>& i, const Record<Dim, T, M>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
+    (void)i;
     const T volume = j[water_slot::volume];
     const T slope = kernel.dw_over_r(r2) * volume;
     sum.number += kernel.w(r2) * volume;
     sum.gradient += slope * r;
     for (int a = 0; a < Dim; ++a)
       for (int b = a; b < Dim; ++b) sum.moment[a][b] += slope * r[a] * r[b];
+    if constexpr (Porous) sum.fraction += (slope * (j[fraction] - i[fraction])) * r;
   }
 };
 
@@ -64,7 +74,10 @@ struct Arrangement {
   Vec<Dim> gradient = Vec<Dim>::Zero();
   Eigen::Matrix<double, Dim, Dim> moment = Eigen::Matrix<double, Dim, Dim>::Zero();
 
-  void add(const typename ArrangementPair<Dim>::template Sums<double>& s) {
+  Vec<Dim> fraction = Vec<Dim>::Zero();
+
+  template <class Sums>
+  void add(const Sums& s) {
     number += s.number;
     gradient += to_vec(s.gradient);
     for (int a = 0; a < Dim; ++a)
@@ -72,27 +85,36 @@ struct Arrangement {
         moment(a, b) += s.moment[a][b];
         if (b != a) moment(b, a) += s.moment[a][b];
       }
+    if constexpr (requires { s.fraction; }) fraction += to_vec(s.fraction);
   }
 };
 
 /// Once per advection step, in one walk over the pairs: the free surface by the divergence of
-/// position, the density by summation (Algorithm 2, line 11) and the transport displacement (Eq. 87).
+/// position, the density by summation (Algorithm 2, line 11) and the transport displacement (Eqs. 87, 88).
+///
+/// In soil every sum is taken with the target volumes m / (rho0 n^w) of Eq. 88. So the density, too, is told by how far the
+/// particles are from the spacing that the porosity asks for. The print's sum of m W, divided by the particle's own n^w,
+/// compares a fraction that was smoothed twice with one that was smoothed once: at a step of porosity they differ by
+/// several percent, which the equation of state would answer with pressures of several dynamic heads.
 template <int Dim>
 class WaterReinitialization final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"water_reinitialization", Stage::reinitialize, "Algorithm 2 line 11, Eq. 87",
+    return {"water_reinitialization", Stage::reinitialize, "Algorithm 2 line 11, Eqs. 87-89",
             "free surface, density by summation, transport displacement", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
     const Numerics& n = world.model().numerics;
-    if (n.density_reinitialization == "none" && !n.transport_velocity)
-      return {"numerics switches off both density_reinitialization and transport_velocity"};
-    return {std::make_unique<WaterReinitialization>(world.find("walls") != nullptr), "there is water"};
+    if (n.density_reinitialization != "summation" && !n.transport_velocity)
+      return {"numerics switches off both density_reinitialization by summation and transport_velocity"};
+    return {std::make_unique<WaterReinitialization>(world), "there is water"};
   }
 
-  explicit WaterReinitialization(bool walls) : has_walls_(walls) {}
+  explicit WaterReinitialization(const World<Dim>& world)
+      : has_walls_(world.find("walls") != nullptr), porous_(volume_follows_porosity(world) && world.model().numerics.transport_target_volume) {
+    if (volume_follows_porosity(world)) need_volume_share(world, volume_);
+  }
 
   std::string acts_on() const override { return "water"; }
   Needs needs() const override {
@@ -101,6 +123,7 @@ class WaterReinitialization final : public Effect<Dim> {
              {"water", &fields::position, Access::update},
              {"water", &fields::surface, Access::write}},
             {{"water", "water"}}};
+    n.fields.insert(n.fields.end(), volume_.fields.begin(), volume_.fields.end());
     if (has_walls_) {
       n.fields.push_back({"walls", &fields::volume, Access::read});
       n.lists.push_back({"water", "walls"});
@@ -111,14 +134,18 @@ class WaterReinitialization final : public Effect<Dim> {
   void prepare(World<Dim>& world) override {
     water_ = &world.set("water");
     if (world.model().numerics.transport_velocity) world.records("water", 1);
-    lattice_ = lattice_sums(Kernel<Dim>(water_->smoothing_length()), water_->spacing()).number;
+    const Kernel<Dim> kernel(water_->smoothing_length());
+    lattice_ = lattice_sums(kernel, water_->spacing()).number;
+    if (porous_) spread_ = std::make_unique<LatticeNumber<Dim>>(kernel, water_->spacing());
   }
 
   void apply(World<Dim>& world) override {
     const Numerics& n = world.model().numerics;
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      sum_pairs<T>(world, n.density_reinitialization == "summation", n.transport_velocity);
+      const bool summation = n.density_reinitialization == "summation";
+      if (porous_) sum_pairs<T, true>(world, summation, n.transport_velocity);
+      else sum_pairs<T, false>(world, summation, n.transport_velocity);
       if (n.transport_velocity) shift<T>(world);
     });
     if (n.transport_velocity) world.pack_positions(*water_);
@@ -126,60 +153,76 @@ class WaterReinitialization final : public Effect<Dim> {
 
  private:
   // Block by block, so that the sums of no more than a block are ever kept.
-  template <class T>
+  template <class T, bool Porous>
   void sum_pairs(World<Dim>& world, bool summation, bool transport) {
     using Sums = std::array<Arrangement<Dim>, block_size>;
     const double rho0 = water_->constant("density");
     const auto& m = water_->scalar(fields::mass);
-    const ArrangementPair<Dim> pair{Kernel<Dim>(water_->smoothing_length())};
+    const ArrangementPair<Dim, Porous> pair{Kernel<Dim>(water_->smoothing_length())};
+    const ArrangementPair<Dim, false> wall_pair{pair.kernel};
+    const Field<double>* n = Porous ? volume_share(world) : nullptr;
+    const auto at_rest = [&](Index i) { return Porous ? m[i] / (rho0 * (*n)[i]) : m[i] / rho0; };
     auto& records = world.records("water").template get<T>();
     // The volume at rest, so that compression does not feed back on the arrangement.
     parallel_for(water_->size(), [&](Index i) {
-      records[i][water_slot::volume] = static_cast<T>(m[i] / rho0);
+      records[i][water_slot::volume] = static_cast<T>(at_rest(i));
+      if constexpr (Porous) records[i][pair.fraction] = static_cast<T>((*n)[i]);
     });
-    const auto walk = [&](const NeighborList& list, const Records<Dim, T>& sources, Index b, Sums& sums) {
-      gather_block<ArrangementPair<Dim>::template Sums>(
-          list, b, records, sources, pair,
+    const auto walk = [&](const NeighborList& list, const Records<Dim, T>& sources, const auto& with_pair, Index b, Sums& sums) {
+      gather_block<std::decay_t<decltype(with_pair)>::template Sums>(
+          list, b, records, sources, with_pair,
           [&](Index i, const auto& s) { sums[static_cast<std::size_t>(i - b * block_size)].add(s); });
     };
     const NeighborList& water = world.list("water", "water");
     const NeighborList* walls = has_walls_ ? &world.list("water", "walls") : nullptr;
     const Records<Dim, T>* wall_records = has_walls_ ? &world.records("walls").template get<T>() : nullptr;
     Records<Dim, T>* second = transport ? &world.records("water", 1).template get<T>() : nullptr;
-    const double self = pair.kernel.w(0.0);
+    const double self = pair.kernel.w(0.0), volume_at_dp = std::pow(water_->spacing(), Dim);
     auto& rho = water_->scalar(fields::density);
     auto& surface = water_->tag(fields::surface);
     parallel_blocks(water_->size(), block_size, [&](Index begin, Index end, Index b) {
       Sums sums;
-      walk(water, records, b, sums);
-      if (walls) walk(*walls, *wall_records, b, sums);
+      walk(water, records, pair, b, sums);
+      if (walls) walk(*walls, *wall_records, wall_pair, b, sums);
       for (Index i = begin; i < end; ++i) {
         const Arrangement<Dim>& s = sums[static_cast<std::size_t>(i - begin)];
         // The divergence of position is Dim in the bulk; three quarters of it tell the surface.
         surface[i] = -s.moment.trace() < 0.75 * Dim ? 1 : 0;
         if (summation) {
-          const double summed = rho0 * (s.number + self * m[i] / rho0) / lattice_;
+          const double lattice = Porous ? (*spread_)(volume_at_dp * rho0 * (*n)[i] / m[i]) : lattice_;
+          const double summed = rho0 * (s.number + self * at_rest(i)) / lattice;
           // A sum that falls short is a surface or a splash, not a rarefaction: it keeps its density,
           // up to the factor by which rho exceeds rho0.
           rho[i] = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
           // A free surface bears no tension; a lonely particle would be drawn into a wall by it.
           if (surface[i]) rho[i] = std::max(rho[i], rho0);
         }
-        if (second) pack_surface((*second)[i] - record_size, surface[i] != 0, s);
+        if (second) pack_surface((*second)[i] - record_size, surface[i] != 0, s, Porous ? projected(world, s) : s.gradient);
       }
     });
   }
 
   // What the shift needs of one particle.
   template <class T>
-  static void pack_surface(T* slot, bool surface, const Arrangement<Dim>& s) {
+  static void pack_surface(T* slot, bool surface, const Arrangement<Dim>& s, const Vec<Dim>& gradient) {
     using Pair = SurfacePair<Dim>;
     const Vec<Dim> normal = surface ? surface_normal(s) : Vec<Dim>::Zero();
     slot[Pair::on_surface] = surface ? T(1) : T(0);
     for (int k = 0; k < Dim; ++k) {
       slot[Pair::surface_normal + k] = static_cast<T>(normal[k]);
-      slot[Pair::gradient + k] = static_cast<T>(s.gradient[k]);
+      slot[Pair::gradient + k] = static_cast<T>(gradient[k]);
     }
+  }
+
+  // P^p of Eqs. 88 and 89 on the sum of gradients: where the porosity changes within a smoothing length, the spacing changes
+  // with it, and the shift would even out what is meant to be uneven.
+  Vec<Dim> projected(const World<Dim>& world, const Arrangement<Dim>& s) const {
+    const Numerics& n = world.model().numerics;
+    if (!n.transport_projection || water_->smoothing_length() * s.fraction.norm() <= n.transport_projection_threshold) return s.gradient;
+    Vec<Dim> normal = s.fraction;
+    if (std::abs(s.moment.determinant()) > 1e-3) normal = s.moment.inverse() * s.fraction;
+    normal.normalize();
+    return s.gradient - normal.dot(s.gradient) * normal;
   }
 
   // Eq. 87 with the sign that leads away from crowded places. Wherever the kernel reaches the free
@@ -227,7 +270,9 @@ class WaterReinitialization final : public Effect<Dim> {
     return (s.moment.inverse() * s.gradient).normalized();
   }
 
-  bool has_walls_;
+  bool has_walls_, porous_;
+  Needs volume_;  // what the target volume needs beside the mass
+  std::unique_ptr<LatticeNumber<Dim>> spread_;
   ParticleSet<Dim>* water_ = nullptr;
   double lattice_ = 1;
 };

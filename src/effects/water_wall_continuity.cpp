@@ -28,14 +28,21 @@ class WaterWallContinuity final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water") || !world.find("walls")) return {"there is no water, or there are no walls"};
-    return {std::make_unique<WaterWallContinuity>(), "there are water and walls"};
+    return {std::make_unique<WaterWallContinuity>(volume_follows_porosity(world)), "there are water and walls"};
   }
+
+  explicit WaterWallContinuity(bool porous) : porous_(porous) {}
 
   std::string acts_on() const override { return "water near walls"; }
   Needs needs() const override {
-    return {{{"water", &fields::density, Access::read}, {"water", &fields::density_rate, Access::add},
+    Needs n{{{"water", &fields::density, Access::read}, {"water", &fields::density_rate, Access::add},
              {"walls", &fields::volume, Access::read}},
             {{"water", "walls"}}};
+    if (porous_) {
+      n.fields.push_back({"water", &fields::water_fraction, Access::read});
+      n.fields.push_back({"water", &fields::soil_velocity, Access::read});  // the records hold the mixture's
+    }
+    return n;
   }
   void prepare(World<Dim>& world) override { water_ = &world.set("water"); }
 
@@ -43,16 +50,18 @@ class WaterWallContinuity final : public Effect<Dim> {
     const WallDivergence<Dim> pair{WallPair<Dim>(WaterConstants::of(world), water_->smoothing_length(), water_->spacing())};
     const auto& rho = water_->scalar(fields::density);
     auto& rate = water_->scalar(fields::density_rate);
+    const Field<double>* n = volume_share(world);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       gather<WallDivergence<Dim>::template Sums>(
           world.list("water", "walls"), world.records("water").template get<T>(),
           with(world.records("walls", 0).template get<T>(), world.records("walls", 1).template get<T>()), pair,
-          [&](Index i, const auto& sum) { rate[i] += rho[i] * sum.divergence; });
+          [&](Index i, const auto& sum) { rate[i] += rho[i] * (n ? sum.divergence / (*n)[i] : sum.divergence); });
     });
   }
 
  private:
+  bool porous_;
   ParticleSet<Dim>* water_ = nullptr;
 };
 

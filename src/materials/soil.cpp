@@ -21,10 +21,22 @@ Schema<Soil> Soil::schema() {
   s.optional("saturated_cohesion", &Soil::saturated_cohesion, unit::pressure,
              "cohesion at full saturation; between, it falls linearly; auto: cohesion does not depend on water").at_least(0).equation("Eq. 108");
   s.optional("dilation_angle", &Soil::dilation_angle, unit::angle, "dilation angle psi").at_least(0).below(1.5).equation("Eq. 14");
+  s.optional("drag", &Soil::drag, unit::none,
+             "drag of water in the soil; auto: darcy with a hydraulic_conductivity, ergun with a grain_size, else none")
+      .choices({"auto", "ergun", "darcy", "none"});
+  s.optional("grain_size", &Soil::grain_size, unit::length, "characteristic grain size D_c of Ergun's drag, mostly D50").above(0).equation("Eq. 31");
+  s.optional("hydraulic_conductivity", &Soil::hydraulic_conductivity, unit::speed, "hydraulic conductivity K^s of Darcy's drag").above(0).equation("Eq. 29");
+  s.optional("drag_viscous", &Soil::drag_viscous, unit::none, "coefficient alpha_d of Ergun's viscous term").at_least(0).equation("Eq. 31");
+  s.optional("drag_inertial", &Soil::drag_inertial, unit::none, "coefficient beta_d of Ergun's inertial term").at_least(0).equation("Eq. 31");
   s.optional("skeleton", &Soil::skeleton, unit::none,
              "deformable; fixed: it never moves; prescribed: it keeps the velocity field of its bodies, whatever the stress")
       .choices({"deformable", "fixed", "prescribed"});
   s.check([](Soil& m, CheckContext& c) {
+    if (m.drag == "ergun" && !m.grain_size) c.error("drag", "Ergun's drag needs a grain size", "give grain_size, as in 'grain_size: 2 mm'");
+    if (m.drag == "darcy" && !m.hydraulic_conductivity)
+      c.error("drag", "Darcy's drag needs a hydraulic conductivity", "give hydraulic_conductivity, as in 'hydraulic_conductivity: 1e-3 m/s'");
+    if (m.drag == "auto" && m.grain_size && m.hydraulic_conductivity)
+      c.error("hydraulic_conductivity", "grain_size and hydraulic_conductivity belong to two drag laws", "give one of them, or say which: 'drag: ergun' or 'drag: darcy'");
     if (m.elastic()) {
       // By value: a resolved deck, which a run may be made of again, names every key.
       const std::pair<const char*, bool> plastic[] = {{"friction_angle", m.friction_angle.has_value()}, {"friction", m.friction.has_value()},

@@ -21,6 +21,11 @@ struct Soil final : MaterialSpec {
   double cohesion = 0;                      ///< c, Pa
   std::optional<double> saturated_cohesion; ///< c of Eq. 108 at full saturation, Pa
   double dilation_angle = 0;                ///< psi, rad
+  std::string drag = "auto";                ///< auto | ergun | darcy | none, of water in the soil
+  std::optional<double> grain_size;         ///< D_c of Eq. 31, m
+  std::optional<double> hydraulic_conductivity;  ///< K^s of Eq. 29, m/s
+  double drag_viscous = 150;                ///< alpha_d of Eq. 31
+  double drag_inertial = 1.75;              ///< beta_d of Eq. 31
   std::string skeleton = "deformable";      ///< deformable | fixed | prescribed
 
   std::string phase() const override { return "soil"; }
@@ -29,6 +34,11 @@ struct Soil final : MaterialSpec {
   /// Stiffness of a column that cannot expand sideways, Pa.
   double oedometric_modulus() const { return bulk_modulus() + 4 * shear_modulus() / 3; }
   bool elastic() const { return plasticity == "none"; }
+  /// The drag law: ergun, darcy or none; `auto` goes by what is given.
+  std::string drag_law() const {
+    if (drag != "auto") return drag;
+    return hydraulic_conductivity ? "darcy" : grain_size ? "ergun" : "none";
+  }
   bool moves_by_forces() const { return skeleton == "deformable"; }
   double tan_friction() const;
   /// Constants of the stress point with the cohesion at the degree of saturation S_r (Eq. 108).

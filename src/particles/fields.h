@@ -41,7 +41,23 @@ inline constexpr FieldSpec gradient_correction{"gradient_correction", tensor, st
 inline constexpr FieldSpec plastic_strain{"plastic_strain", scalar, state, unit::none, "accumulated equivalent plastic strain"};
 inline constexpr FieldSpec plastic_work{"plastic_work", scalar, state, unit::energy,
                                         "energy dissipated by plastic flow; J per metre of depth in 2D"};
+inline constexpr FieldSpec water_acceleration{"water_acceleration", vector, state, unit::acceleration,
+                                              "acceleration of soil by pore pressure and drag in the last acoustic step"};
+inline constexpr FieldSpec pore_pressure{"pore_pressure", scalar, derived, unit::pressure, "pressure of the water at a soil particle, Eq. 47"};
 inline constexpr FieldSpec saturation{"saturation", scalar, state, unit::none, "degree of saturation S_r, Eq. 68"};
+
+// Water in soil.
+inline constexpr FieldSpec water_fraction{"water_fraction", scalar, derived, unit::none, "share of the volume that water can take, n^w, Eq. 56"};
+inline constexpr FieldSpec soil_sum{"soil_sum", scalar, derived, unit::none, "sum of the grains' volume over soil neighbors, without the walls' share"};
+inline constexpr FieldSpec inverse_soil_mass{"inverse_soil_mass", scalar, derived, unit::inverse_mass,
+                                             "1 / mass of the soil that a water particle moves by its drag"};
+inline constexpr FieldSpec drag_linear{"drag_linear", scalar, derived, unit::drag_linear, "drag per volume and relative velocity, Eqs. 29, 31"};
+inline constexpr FieldSpec drag_quadratic{"drag_quadratic", scalar, derived, unit::drag_quadratic,
+                                          "drag per volume and square of the relative velocity, Eq. 31"};
+inline constexpr FieldSpec pressure_force{"pressure_force", vector, derived, unit::force_density, "minus the gradient of the water pressure"};
+inline constexpr FieldSpec soil_velocity{"soil_velocity", vector, derived, unit::speed, "velocity of the soil at a water particle, Eq. 57"};
+inline constexpr FieldSpec drag_acceleration{"drag_acceleration", vector, state, unit::acceleration,
+                                             "acceleration of water by drag in the last acoustic step"};
 
 /// All of them, for lookups by name.
 inline constexpr const FieldSpec* all[] = {&id, &part, &position, &velocity, &acceleration,
@@ -49,6 +65,8 @@ inline constexpr const FieldSpec* all[] = {&id, &part, &position, &velocity, &ac
                                            &density, &density_rate, &pressure, &volume, &surface,
                                            &normal, &reference_position, &reference_normal, &no_slip, &wall_force,
                                            &volume_fraction, &volume_fraction_rate, &initial_volume_fraction, &stress, &crowding, &gradient_correction,
-                                           &plastic_strain, &plastic_work, &saturation};
+                                           &plastic_strain, &plastic_work, &water_acceleration, &pore_pressure, &saturation,
+                                           &water_fraction, &soil_sum, &inverse_soil_mass, &drag_linear, &drag_quadratic,
+                                           &pressure_force, &soil_velocity, &drag_acceleration};
 
 }  // namespace sphgeo::fields

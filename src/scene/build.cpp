@@ -60,6 +60,8 @@ const Water* find_water(const Model& model) {
 /// Pressure at t = 0, Pa.
 double initial_pressure(const Body& body, const Model& model, double density, const Vec3& at) {
   if (body.pressure.word == "zero") return 0;
+  if (body.pressure.word == "hydraulic_head")
+    return std::max(0.0, -density * model.gravity.z() * ((*body.head)(at, 0) - at.z()));
   if (body.pressure.word == "hydrostatic") {
     const double level = body.level.value_or(body.shape->box().hi.z());
     return std::max(0.0, -density * model.gravity.z() * (level - at.z()));

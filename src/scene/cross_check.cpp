@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "core/text.h"
+#include "materials/soil.h"
 #include "probes/probe.h"
 #include "scene/leak.h"
 #include "scene/wall_check.h"
@@ -137,12 +138,18 @@ void check_probes(const World<Dim>& world, Diagnostics& found) {
   }
 }
 
-// Soil and water in one scene pass through each other: no effect couples them yet.
+// Water that meets soil without a drag law feels its pressure only.
 template <int Dim>
 void check_coupling(const World<Dim>& world, Diagnostics& found) {
   if (!world.find("soil") || !world.find("water")) return;
-  found.warning("W130", world.model().place_of("bodies"), "bodies", "water and soil do not act on each other",
-                "each of them moves as if the other were not there; run them in scenes of their own");
+  const Model& model = world.model();
+  for (std::size_t k = 0; k < model.materials.size(); ++k) {
+    const auto* soil = dynamic_cast<const Soil*>(model.materials[k].get());
+    if (!soil || soil->drag != "auto" || soil->drag_law() != "none") continue;
+    const std::string path = fmt::format("materials[{}]", k);
+    found.warning("W130", model.place_of(path), path, fmt::format("water passes through soil '{}' without drag", soil->name),
+                  "give grain_size (Ergun) or hydraulic_conductivity (Darcy), or say 'drag: none'");
+  }
 }
 
 void check_shapes(const Model& model, Diagnostics& found) {

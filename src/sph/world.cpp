@@ -111,11 +111,10 @@ void World<Dim>::rearrange() {
     grid.build({x.data(), static_cast<std::size_t>(x.size())}, frame_, reach());
     s->permute(grid.order());
     grid.set_sorted();
-    for (int which = 0; which < 3; ++which) {
-      const auto it = records_.find({s->name(), which});
-      if (it == records_.end()) continue;
-      if (single_) it->second.single.resize(s->size(), frame_);
-      else it->second.full.resize(s->size(), frame_);
+    for (auto& [key, record] : records_) {
+      if (key.first != s->name()) continue;
+      if (single_) record.single.resize(s->size(), frame_);
+      else record.full.resize(s->size(), frame_);
     }
     if (records_.contains({s->name(), 0})) pack_positions(*s);
   }

@@ -74,7 +74,7 @@ class World {
   bool single_precision() const { return single_; }
   /// Whether pair sums see positions of the last rearrangement (true) or of now.
   bool frozen_geometry() const { return frozen_; }
-  /// Records number `which` (0 to 2) of a set: kept by the effects, sized by rearrange().
+  /// Records number `which` of a set: kept by the effects, sized by rearrange().
   RecordPair<Dim>& records(const std::string& set, int which = 0) { return records_[{set, which}]; }
 
   /// Sets the box outside of which particles are lost and fits the fixed-point frame to it.
