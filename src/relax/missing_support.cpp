@@ -14,7 +14,7 @@ MissingSupport::MissingSupport(const Shape& water, const Aabb& around, double h_
   const int intervals = static_cast<int>(std::ceil(std::log(h_high / h_low) / std::log(step) - 1e-9));
   for (int k = 0; k <= intervals; ++k) {
     h_.push_back(intervals == 0 ? h_low : h_low * std::pow(h_high / h_low, static_cast<double>(k) / intervals));
-    mesh_.emplace_back(water, around, h_.back() / 3.6, RelaxKernel(h_.back(), dim), dim);
+    mesh_.emplace_back(water, around, h_.back() / 2.6, RelaxKernel(h_.back(), dim), dim);
   }
 }
 

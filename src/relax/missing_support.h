@@ -11,7 +11,7 @@ namespace sphgeo {
 /// and straight lines between.
 class MissingSupport {
  public:
-  /// Meshes around the box `around` for smoothing lengths from h_low to h_high, m; nodes are h/3.6 apart.
+  /// Meshes around the box `around` for smoothing lengths from h_low to h_high, m; nodes are h/2.6 apart.
   MissingSupport(const Shape& water, const Aabb& around, double h_low, double h_high, int dim);
 
   /// Sums over the outside of the water at p for the smoothing length h; zero deep inside.

@@ -131,10 +131,13 @@ class Relaxer {
       Vec<Dim> gradient = to_scene<Dim>(beyond.gradient);
       double sum = beyond.sum;
       const Vec<Dim> p = at(places_, i);
+      // The kernel and its slope as RelaxKernel has them, with what they share computed once.
+      const double top = kernel.value(0), steepest = kernel.slope(0), per_h = 1 / h;
       grid_.for_each_in_reach(p, kernel.support(), [&](Index j, double r2) {
-        const double r = std::sqrt(r2), v = at(volume_, j);
-        sum += kernel.value(r) * v;
-        gradient += kernel.slope(r) * v * (p - at(places_, j));
+        const double q = std::sqrt(r2) * per_h, a = std::max(0.0, 1 - 0.5 * q), v = at(volume_, j);
+        const double a3v = a * a * a * v;
+        sum += top * a3v * a * (2 * q + 1);
+        gradient += steepest * a3v * (p - at(places_, j));
       });
       Vec3 move = -gain * h * h * to_space<Dim>(gradient);
       const double length = move.norm(), most = longest * spacing(i);
