@@ -203,6 +203,21 @@ int main(int argc, char** argv) {
       ->type_name("N");
   check_app->callback([&] { code = run_guarded([&] { return check_command(check); }); });
 
+  RelaxOptions relax;
+  CLI::App* relax_app = app.add_subcommand("relax", "distribute the water in the pores of soil, and store it");
+  add_deck(relax_app, relax.deck, relax.set);
+  relax_app->add_option("-o,--output", relax.folder, "the folder of the results")
+      ->required()
+      ->type_name("DIR");
+  relax_app->add_option("--threads", relax.threads, "number of threads (default: all)")
+      ->check(whole)
+      ->type_name("N");
+  relax_app->add_flag("--overwrite", relax.overwrite, "replace the results in the folder");
+  relax_app->add_flag("--verify", relax.verify,
+                      "exit with 4 when a result about the relaxation under 'expect' is not met");
+  relax_app->add_flag("-q,--quiet", relax.quiet, "say nothing but results");
+  relax_app->callback([&] { code = run_guarded([&] { return relax_command(relax); }); });
+
   CLI::App* list_app =
       app.add_subcommand("list", "print all types, deck sections, effects and fields");
   list_app->callback([&] { code = run_guarded(list_command); });

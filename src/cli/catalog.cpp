@@ -98,7 +98,7 @@ CatalogGroup fields_group() {
 
 std::vector<CatalogGroup> catalog() {
   return {{"section", "deck sections", "The keys of the deck and of the mappings in it.",
-           {section<Model>(), section<Body>(), section<Motion>(), section<Output>(), section<Frames>(), section<Numerics>(), section<Expect>()}},
+           {section<Model>(), section<Body>(), section<Motion>(), section<Output>(), section<Frames>(), section<Numerics>(), section<Relaxation>(), section<Expect>()}},
           types(Registry<MaterialSpec>::get(), "materials", "What bodies are made of: entries of `materials`."),
           types(Registry<Shape>::get(), "shapes", "Regions of space, for bodies and walls."),
           types(Registry<BoundarySpec>::get(), "boundaries", "Borders of the scene: entries of `boundaries`."),

@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/forecast.h"
 #include "cli/recorder.h"
+#include "cli/relaxation_report.h"
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -82,7 +83,7 @@ template <int Dim>
 int check(const Model& model, const CheckOptions& options, clock_type::time_point start) {
   const std::uint64_t base = resident_memory();
   Diagnostics found = model.warnings;
-  Scene<Dim> scene = build_scene<Dim>(model, found);
+  Scene<Dim> scene = build_scene<Dim>(model, found, Filling::draft);
   check_scene(scene, found);
   if (found.has_errors()) throw DeckError(found);
   if (!found.items().empty()) std::cerr << found.render();
@@ -116,6 +117,7 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
   for (const auto& set : world.sets()) std::cout << fmt::format("  {:<10} {:>10} particles\n", set->name(), set->size());
   for (const auto& [name, n] : scene.body_particles) std::cout << fmt::format("    body '{}': {}\n", name, n);
   for (const auto& [name, n] : scene.boundary_particles) std::cout << fmt::format("    boundary '{}': {}\n", name, n);
+  if (scene.pore_water) std::cout << fmt::format("  {}\n", printable(relaxation_line(model, *scene.pore_water)));
   if (world.find("water"))
     std::cout << fmt::format("  speed of sound {:.4g} m/s: {}\n", scene.sound.value, scene.sound.because);
   if (options.explain) print_plan(j);

@@ -31,6 +31,18 @@ struct CheckOptions {
 };
 int check_command(const CheckOptions& options);
 
+struct RelaxOptions {
+  std::string deck;
+  std::string folder;
+  std::vector<std::string> set;
+  int threads = 0;          ///< 0: all that the machine has
+  bool overwrite = false;
+  bool verify = false;      ///< exit 4 when a claim about the relaxation is not met
+  bool quiet = false;
+};
+/// Relaxes the water in soil and stores it. Throws Error (usage) when the deck has none.
+int relax_command(const RelaxOptions& options);
+
 struct BenchOptions {
   bool json = false;
   std::vector<std::string> scenes;   ///< empty: all

@@ -65,7 +65,7 @@ struct CoarseCopy {
   Scene<Dim> scene;
   std::unique_ptr<Plan<Dim>> plan;
 
-  CoarseCopy(const Model& original, double wanted) : model(coarse(original, wanted)), scene(build_scene<Dim>(model, found)) {
+  CoarseCopy(const Model& original, double wanted) : model(coarse(original, wanted)), scene(build_scene<Dim>(model, found, Filling::draft)) {
     std::vector<std::string> names;
     for (const auto& set : scene.world->sets()) names.push_back(set->name());
     plan = std::make_unique<Plan<Dim>>(*scene.world, wishes_of(model, names));
@@ -75,6 +75,7 @@ struct CoarseCopy {
   static Model coarse(const Model& original, double wanted) {
     Model m = at_resolution(original, spacing_for(original, wanted));
     for (Body& b : m.bodies) b.filling = "lattice";
+    m.relaxation.file.reset();  // made for another spacing
     return m;
   }
 };

@@ -9,6 +9,7 @@
 #include "cli/forecast.h"
 #include "cli/keeper.h"
 #include "cli/recorder.h"
+#include "cli/relaxation_report.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/memory.h"
@@ -131,13 +132,14 @@ class DeckRun {
     if (!resumed) check_scene(scene, found);
     if (found.has_errors()) throw DeckError(found);
     if (!found.items().empty()) std::cerr << found.render();
+    if (scene.pore_water && !options_.quiet) std::cerr << printable(relaxation_line(model_, *scene.pore_water)) << "\n";
     return scene;
   }
 
   void finish(const RunParts<Dim>& parts, const Keeper<Dim>& keeper, const RunFolder& folder, const std::optional<UnstableError>& failure) {
     const World<Dim>& world = parts.world;
     parts.recorder.flush();
-    summary_.expect = evaluate(model_.expect, [&](const std::string& name) { return parts.recorder.series(name); });
+    summary_.expect = evaluate(relaxation_expects(model_, false), [&](const std::string& name) { return parts.recorder.series(name); });
     bool met = true;
     for (const ExpectResult& r : summary_.expect) met = met && r.pass;
     const bool stopped = !failure && !stopped_.empty();

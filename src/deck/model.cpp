@@ -185,6 +185,28 @@ Schema<Numerics> Numerics::schema() {
   return s;
 }
 
+Schema<Relaxation> Relaxation::schema() {
+  Schema<Relaxation> s("relaxation", "How water is distributed that starts in the pores of soil.");
+  s.optional("steps", &Relaxation::steps, unit::none, "relaxation steps, at most")
+      .at_least(0)
+      .at_most(100000)
+      .equation("Eq. 85");
+  s.optional("seed", &Relaxation::seed, unit::none, "of the draws that accept candidates: another seed, another start")
+      .at_least(0);
+  s.optional("tolerance", &Relaxation::tolerance, unit::none,
+             "mean movement of a step, over the target spacing, below which the relaxation ends early")
+      .at_least(0)
+      .below(0.1);
+  s.optional("acceptance", &Relaxation::acceptance, unit::none,
+             "stratified: every part of the pores gets its own share of particles; independent: each "
+             "candidate by its own draw, and only the total is right")
+      .choices({"stratified", "independent"});
+  s.optional("file", &Relaxation::file, unit::none,
+             "relaxed.h5 of 'sphgeo relax', to be used again; auto: relaxed when the scene is built")
+      .changeable_on_resume();
+  return s;
+}
+
 Schema<Frames> Frames::schema() {
   Schema<Frames> s("frames", "Particle frames for ParaView.");
   s.optional("every", &Frames::every, unit::time, "interval between frames; auto: end_time / 20")

@@ -67,6 +67,19 @@ struct Numerics {
   static Schema<Numerics> schema();
 };
 
+/// What `expect` calls the history of the relaxation; no probe may bear the name.
+inline constexpr const char* relaxation_probe = "relaxation";
+
+/// How water is distributed that starts in the pores of soil (section 3.3).
+struct Relaxation {
+  int steps = 100;
+  Index seed = 1;
+  double tolerance = 0;                  ///< mean movement of a step, over the target spacing, that ends it early
+  std::string acceptance = "stratified"; ///< stratified | independent draws of the candidates
+  std::optional<FilePath> file;          ///< a stored result
+  static Schema<Relaxation> schema();
+};
+
 /// Particle frames for ParaView.
 struct Frames {
   std::optional<double> every;        ///< s; empty: end_time / 20
@@ -128,6 +141,7 @@ struct Model {
   std::vector<std::shared_ptr<const ProbeSpec>> probes;
   Output output;
   Numerics numerics;
+  Relaxation relaxation;
   std::vector<Expect> expect;
 
   Places places;         ///< where each key path stands

@@ -55,7 +55,12 @@ void check_names(const std::vector<Named>& named, const std::string& what, Check
 void check_references(const Model& m, CheckContext& c) {
   std::vector<std::string> materials, probes;
   for (const auto& material : m.materials) materials.push_back(material->name);
-  for (const auto& probe : m.probes) probes.push_back(probe->name);
+  for (std::size_t k = 0; k < m.probes.size(); ++k) {
+    probes.push_back(m.probes[k]->name);
+    if (m.probes[k]->name == relaxation_probe)
+      c.error(fmt::format("probes[{}].name", k), fmt::format("a probe cannot be called '{}'", relaxation_probe),
+              "that is what 'expect' calls the history of the relaxation", "E024");
+  }
   for (std::size_t k = 0; k < m.bodies.size(); ++k) {
     if (m.material(m.bodies[k].material) != nullptr) continue;
     c.error(fmt::format("bodies[{}].material", k),
@@ -64,6 +69,7 @@ void check_references(const Model& m, CheckContext& c) {
   }
   for (std::size_t k = 0; k < m.expect.size(); ++k) {
     const std::string probe = m.expect[k].probe.substr(0, m.expect[k].probe.find('.'));
+    if (probe == relaxation_probe) continue;
     if (std::find(probes.begin(), probes.end(), probe) != probes.end()) continue;
     c.error(fmt::format("expect[{}].probe", k), fmt::format("there is no probe '{}'", probe),
             suggestion(probe, probes, "probes"), "E021");
@@ -118,6 +124,8 @@ Schema<Model> Model::schema() {
       .items(0, 10000);
   s.optional("output", &Model::output, unit::none, "frames and tables").changeable_on_resume();
   s.optional("numerics", &Model::numerics, unit::none, "choices of the numerical method");
+  s.optional("relaxation", &Model::relaxation, unit::none,
+             "how water is distributed that starts in the pores of soil");
   s.optional("expect", &Model::expect, unit::none, "results the deck claims")
       .items(0, 10000)
       .changeable_on_resume();

@@ -24,7 +24,7 @@ namespace {
 
 // resolved.yaml goes last: while results are being deleted the folder still names their deck.
 constexpr std::array own_files = {"summary.json", "run.csv", "checkpoint.h5", "checkpoint.prev.h5",
-                                  "report.html",  "stop",    "resolved.yaml"};
+                                  "report.html",  "relaxed.h5", "stop",    "resolved.yaml"};
 constexpr std::array own_folders = {"probes", "frames"};
 
 /// Whether sphgeo wrote this file of probes/ or frames/: the ending is one of ours and the text

@@ -25,6 +25,7 @@ class RunFolder {
   std::string run_csv() const { return path_ + "/run.csv"; }
   std::string checkpoint() const { return path_ + "/checkpoint.h5"; }
   std::string previous_checkpoint() const { return path_ + "/checkpoint.prev.h5"; }
+  std::string relaxed() const { return path_ + "/relaxed.h5"; }  ///< of `sphgeo relax`
   std::string report() const { return path_ + "/report.html"; }
   std::string stop_file() const { return path_ + "/stop"; }  ///< asks a run to stop when it appears
   std::string probe_csv(const std::string& probe) const;

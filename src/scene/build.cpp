@@ -10,6 +10,7 @@
 #include "geometry/fill.h"
 #include "geometry/relax_fill.h"
 #include "materials/water.h"
+#include "relax/pore_water.h"
 #include "scene/join_walls.h"
 #include "scene/soil.h"
 
@@ -83,6 +84,8 @@ void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
   set.set_constant("sound_speed", scene.sound.value);
   for (const FieldSpec* f : {&fields::mass, &fields::density, &fields::density_rate}) set.require(*f);
   if (fill == Filling::none) return;
+  scene.pore_water = pore_water(model, found, fill == Filling::draft ? Relaxing::draft : Relaxing::as_deck);
+  if (found.has_errors()) return;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
     const MaterialSpec* material = model.material(body.material);
@@ -90,7 +93,8 @@ void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
     const std::string path = fmt::format("bodies[{}]", b);
     BodyPoints filling;
     try {
-      filling = fill_body(body, model);
+      const std::vector<Vec3>* relaxed = scene.pore_water ? scene.pore_water->of_body(b) : nullptr;
+      filling = relaxed ? BodyPoints{*relaxed, std::pow(model.resolution, Dim)} : fill_body(body, model);
     } catch (const Error& e) {  // without end, or too large to fill
       found.error("E113", model.place_of(path + ".shape"), path + ".shape", e.what());
       continue;

@@ -2,11 +2,13 @@
 // From the model to particles.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "boundaries/boundary.h"
 #include "core/diagnostic.h"
+#include "relax/pore_water.h"
 #include "sph/world.h"
 
 namespace sphgeo {
@@ -25,10 +27,12 @@ struct Scene {
   std::vector<std::pair<std::string, Index>> body_particles;      ///< by body of the deck
   std::vector<std::pair<std::string, Index>> boundary_particles;  ///< by boundary of the deck
   SoundSpeed sound{0, 0, ""};
+  std::optional<PoreWater> pore_water;  ///< how the water in soil was filled, if there is any
 };
 
-/// Whether the sets are filled, or only made: a checkpoint brings its own particles.
-enum class Filling { bodies_and_boundaries, none };
+/// Whether the sets are filled, or only made: a checkpoint brings its own particles. A draft has the right
+/// number of particles, but much water in soil is not relaxed.
+enum class Filling { bodies_and_boundaries, draft, none };
 
 /// Fills bodies, places boundaries, sets the initial state. Findings about the deck that need
 /// particles go to `found`; the model must outlive the world.

@@ -2,6 +2,7 @@
 
 #include "boundaries/boundary.h"
 #include "geometry/fill.h"
+#include "relax/pore_water.h"
 #include "scene/build.h"
 
 namespace sphgeo {
@@ -20,9 +21,12 @@ void add(ParticleCounts& counts, const std::string& set, double n) {
 
 ParticleCounts expected_particles(const Model& model) {
   ParticleCounts counts;
-  for (const Body& b : model.bodies)
+  const std::vector<double> shares = expected_shares(model);
+  for (std::size_t k = 0; k < model.bodies.size(); ++k) {
+    const Body& b = model.bodies[k];
     if (const MaterialSpec* m = model.material(b.material); m && b.shape)
-      add(counts, m->phase(), estimate_fill(*b.shape, model.resolution, model.dimension, {}));
+      add(counts, m->phase(), shares[k] * estimate_fill(*b.shape, model.resolution, model.dimension, {}));
+  }
   const Placement placement{model.resolution, support_radius(model), model.dimension};
   for (const auto& b : model.boundaries)
     if (const auto* wall = dynamic_cast<const WallBoundary*>(b.get())) add(counts, "walls", wall->expected_points(placement));

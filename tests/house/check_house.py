@@ -10,7 +10,7 @@ from pathlib import Path
 
 # Lowest first; the rooms of one tuple are neighbours.
 ROOMS = [("core",), ("deck",), ("particles",), ("sph",), ("geometry", "materials"),
-         ("boundaries", "effects", "probes"), ("scene",), ("plan",), ("relax", "solve", "output"),
+         ("relax",), ("boundaries", "effects", "probes"), ("scene",), ("plan",), ("solve", "output"),
          ("study", "report", "compare"), ("cli",)]
 LEVEL = {room: level for level, rooms in enumerate(ROOMS) for room in rooms}
 # "About 400": a file may be a screenful of declarations over it, not more.
