@@ -22,11 +22,14 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// What a frame of a set shows when the deck names no fields.
-std::vector<std::string> usual_fields(const std::string& set) {
-  if (set == "water") return {"velocity", "pressure", "density", "surface", "part"};
-  if (set == "soil") return {"velocity", "stress", "pressure", "plastic_strain", "volume_fraction", "part"};
-  return {"velocity", "normal", "part"};
+// What a frame of a set shows when the deck names no fields; `mixed`: water and soil meet.
+std::vector<std::string> usual_fields(const std::string& set, bool mixed) {
+  if (set != "water" && set != "soil") return {"velocity", "normal", "part"};
+  std::vector<std::string> names{"velocity", "pressure", "density", "surface", "part"};
+  if (set == "soil") names = {"velocity", "stress", "pressure", "plastic_strain", "volume_fraction", "part"};
+  if (mixed && set == "water") names.insert(names.end(), {"volume", "water_fraction"});
+  if (mixed && set == "soil") names.push_back("pore_pressure");
+  return names;
 }
 
 // How far a CSV file had come at a checkpoint.
@@ -74,8 +77,9 @@ std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& 
       if (present(r.set)) wishes.push_back({r.set, r.field->name, "probe " + p->name});
   for (const std::string& set : sets)
     if (set != "walls")
-      for (const auto& asked = model.output.frames.fields; const std::string& f : asked.empty() ? usual_fields(set) : asked)
-        wishes.push_back({set, f, "frames", asked.empty()});
+      for (const auto& asked = model.output.frames.fields;
+           const std::string& f : asked.empty() ? usual_fields(set, present("water") && present("soil")) : asked)
+        wishes.push_back({set, f, "frames", true});  // a set without that field shows the others
   if (present("water")) wishes.push_back({"water", "pressure", "run.csv"});
   if (present("soil")) wishes.push_back({"soil", "volume", "run.csv"});
   return wishes;
@@ -265,7 +269,9 @@ void Recorder<Dim>::write_frame() {
 template <int Dim>
 std::vector<std::string> Recorder<Dim>::frame_fields(const ParticleSet<Dim>& set) const {
   const auto& asked = world_.model().output.frames.fields;
-  return asked.empty() ? usual_fields(set.name()) : asked;
+  std::vector<std::string> names = asked.empty() ? usual_fields(set.name(), world_.find("water") && world_.find("soil")) : asked;
+  std::erase_if(names, [&](const std::string& f) { return !set.fields().contains(f); });
+  return names;
 }
 
 template <int Dim>

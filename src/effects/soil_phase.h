@@ -1,6 +1,7 @@
 #pragma once
 // What the effects of the soil phase share: parameters of its parts, record layout, the Riemann flux.
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -98,6 +99,8 @@ template <int Dim>
 inline constexpr int impedance = pressure<Dim> + 2;  ///< rho_0 c_0 of the part
 template <int Dim>
 inline constexpr int friction = pressure<Dim> + 3;  ///< mu = tan phi of the part, between soil and rough walls
+template <int Dim>
+inline constexpr int borne = Dim == 2 ? 6 : 20;  ///< share of its weight that the skeleton bears itself: less than 1 in water
 }  // namespace soil_slot
 
 /// Number of records of a soil particle with all that is in them.
@@ -197,7 +200,8 @@ class SoilPacking {
   SoilPacking(World<Dim>& world, const ParticleSet<Dim>& soil)
       : count_(soil_records_used(world)), parts_(world), volume_(soil.scalar(fields::volume)),
         velocity_(soil.vector(fields::velocity)), stress_(soil.tensor(fields::stress)),
-        correction_(soil.tensor(fields::gradient_correction)), part_(soil.tag(fields::part)) {
+        correction_(soil.tensor(fields::gradient_correction)), part_(soil.tag(fields::part)),
+        by_water_(soil.has(fields::water_acceleration) ? &soil.vector(fields::water_acceleration) : nullptr), gravity_(world.gravity()) {
     for (int k = 0; k < count_; ++k) records_[k] = &world.records("soil", k).template get<T>();
   }
 
@@ -218,6 +222,9 @@ class SoilPacking {
     const SoilPart& part = parts_[part_[i]];
     put(i, slot::pressure<Dim>, -(s[0] + s[1] + s[2]) / 3);
     put(i, slot::density<Dim>, part.density);
+    double borne = 1;
+    if (by_water_) borne = std::clamp(1 + (*by_water_)[i].dot(gravity_) / std::max(gravity_.squaredNorm(), 1e-30), 0.0, 1.0);
+    put(i, slot::borne<Dim>, borne);
     put(i, slot::impedance<Dim>, part.impedance());
     put(i, slot::friction<Dim>, part.friction);
   }
@@ -235,6 +242,8 @@ class SoilPacking {
   const Field<Sym3>& stress_;
   const Field<Sym3>& correction_;
   const Field<std::int32_t>& part_;
+  const Field<Vec<Dim>>* by_water_;  // null: there is no water
+  Vec<Dim> gravity_;
 };
 
 }  // namespace sphgeo

@@ -53,7 +53,7 @@ struct SoilWallPair {
     const T bulk = soil[slot::impedance<Dim>] * soil[slot::impedance<Dim>] / max(T(1e-30), soil[slot::density<Dim>]);
     const T contact = bulk * (T(per_spacing) * max(T(0), T(near) - length(r2)));
     const T height = max(T(0), r_n);
-    const T rise = soil[slot::density<Dim>] * wall[wall_slot::push] * height;
+    const T rise = soil[slot::borne<Dim>] * soil[slot::density<Dim>] * wall[wall_slot::push] * height;
     T tensor[Dim * Dim];
     unpack_stress(soil, tensor);
     const LaneVec<Dim, T> on_wall = times(tensor, r_n * n);

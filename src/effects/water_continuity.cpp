@@ -87,10 +87,11 @@ class WaterContinuity final : public Effect<Dim> {
     const WaterConstants w = WaterConstants::of(world);
     const Pair pair{Kernel<Dim>(world.set("water").smoothing_length()), 1 / (w.density * w.sound_speed), w.density * world.gravity()};
     const Field<double>* n = volume_share(world);
+    const Field<double>* scale = gradient_scale(world);
     world.with_pair_precision([&](auto number) {
       const auto& records = world.records("water").template get<decltype(number)>();
       gather<Pair::template Sums>(world.list("water", "water"), records, records, pair, [&](Index i, const auto& sum) {
-        if constexpr (Porous) (*rate_)[i] = (*density_)[i] * (sum.divergence / (*n)[i] + sum.dissipation);
+        if constexpr (Porous) (*rate_)[i] = (*density_)[i] * (*scale)[i] * (sum.divergence / (*n)[i] + sum.dissipation);
         else (*rate_)[i] = (*density_)[i] * sum.divergence;
       });
     });

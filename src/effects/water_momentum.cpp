@@ -87,13 +87,17 @@ class WaterMomentum final : public Effect<Dim> {
     const double h = world.set("water").smoothing_length();
     const Vec<Dim> g = world.gravity();
     const Pair pair{Kernel<Dim>(h), RiemannFlux(w), 2 * w.viscosity, 0.01 * h * h};
+    const Field<double>* scale = Porous ? gradient_scale(world) : nullptr;
     Field<Vec<Dim>>* pressure_force = Porous ? &world.set("water").vector(fields::pressure_force) : nullptr;
     world.with_pair_precision([&](auto number) {
       const auto& records = world.records("water").template get<decltype(number)>();
       gather<Pair::template Sums>(world.list("water", "water"), records, records, pair,
                                   [&](Index i, const auto& sum) {
                                     Vec<Dim> force = to_vec(sum.force);
-                                    if constexpr (Porous) (*pressure_force)[i] = force;
+                                    if constexpr (Porous) {
+                                      if (scale) force *= (*scale)[i];
+                                      (*pressure_force)[i] = force;
+                                    }
                                     if constexpr (Porous && Viscous) force += to_vec(sum.friction);
                                     (*acceleration_)[i] = g + force / (*density_)[i];
                                   });

@@ -17,7 +17,10 @@ class WaterPredict final : public Effect<Dim> {
     return {std::make_unique<WaterPredict>(world), "there is water"};
   }
 
-  explicit WaterPredict(const World<Dim>& world) { need_volume_share(world, volume_); }
+  explicit WaterPredict(const World<Dim>& world) {
+    need_volume_share(world, volume_);
+    if (volume_follows_porosity(world)) volume_.fields.push_back({"water", &fields::gradient_scale, Access::read});
+  }
 
   std::string acts_on() const override { return "water"; }
   Needs needs() const override {
@@ -49,6 +52,7 @@ class WaterPredict final : public Effect<Dim> {
     const auto& v = water_->vector(fields::velocity);
     const auto& m = water_->scalar(fields::mass);
     const Field<double>* share = volume_share(world);
+    const Field<double>* scale = gradient_scale(world);
     const bool repack = !world.frozen_geometry();
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
@@ -59,7 +63,7 @@ class WaterPredict final : public Effect<Dim> {
         p[i] = c2 * (rho[i] - w.density);
         volume[i] = m[i] / (share ? (*share)[i] * rho[i] : rho[i]);
         T* slot = records[i];
-        slot[water_slot::volume] = static_cast<T>(volume[i]);
+        slot[water_slot::volume] = static_cast<T>(scale ? volume[i] * (*scale)[i] : volume[i]);
         slot[water_slot::pressure] = static_cast<T>(p[i]);
         for (int k = 0; k < Dim; ++k) slot[water_slot::velocity + k] = static_cast<T>(v[i][k]);
         if (repack) records.set_position(i, x[i]);

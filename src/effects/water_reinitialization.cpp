@@ -28,7 +28,9 @@ struct ArrangementPair {
   };
   template <class T>
   struct Sums : std::conditional_t<Porous, Pores<T>, Clear<T>> {};
-  static constexpr int fraction = 7;  ///< slot of n^w in the first record while this pass runs
+  // Slots of the first record while this pass runs.
+  static constexpr int swelling = 4;  ///< volume for the transport over the target volume
+  static constexpr int fraction = 7;  ///< n^w
 
   template <class T, int N, int M>
   void operator()(Sums<T>& sum, const Record<Dim, T, N>& i, const Record<Dim, T, M>& j,
@@ -37,7 +39,8 @@ struct ArrangementPair {
     const T volume = j[water_slot::volume];
     const T slope = kernel.dw_over_r(r2) * volume;
     sum.number += kernel.w(r2) * volume;
-    sum.gradient += slope * r;
+    if constexpr (Porous) sum.gradient += (slope * j[swelling]) * r;
+    else sum.gradient += slope * r;
     for (int a = 0; a < Dim; ++a)
       for (int b = a; b < Dim; ++b) sum.moment[a][b] += slope * r[a] * r[b];
     if constexpr (Porous) sum.fraction += (slope * (j[fraction] - i[fraction])) * r;
@@ -96,6 +99,10 @@ struct Arrangement {
 /// particles are from the spacing that the porosity asks for. The print's sum of m W, divided by the particle's own n^w,
 /// compares a fraction that was smoothed twice with one that was smoothed once: at a step of porosity they differ by
 /// several percent, which the equation of state would answer with pressures of several dynamic heads.
+///
+/// The shift alone takes the volumes m / (rho n^w) of now. With those at rest (Eq. 88) it works against the compression of water
+/// at depth, without end: particles that stay where they are then have a velocity against it, and the drag of fine soil answers
+/// to that velocity with more than the weight of the water.
 template <int Dim>
 class WaterReinitialization final : public Effect<Dim> {
  public:
@@ -106,14 +113,15 @@ class WaterReinitialization final : public Effect<Dim> {
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
     const Numerics& n = world.model().numerics;
-    if (n.density_reinitialization != "summation" && !n.transport_velocity)
+    if (n.density_reinitialization != "summation" && !n.transport_velocity && !volume_follows_porosity(world))
       return {"numerics switches off both density_reinitialization by summation and transport_velocity"};
     return {std::make_unique<WaterReinitialization>(world), "there is water"};
   }
 
   explicit WaterReinitialization(const World<Dim>& world)
-      : has_walls_(world.find("walls") != nullptr), porous_(volume_follows_porosity(world) && world.model().numerics.transport_target_volume) {
-    if (volume_follows_porosity(world)) need_volume_share(world, volume_);
+      : has_walls_(world.find("walls") != nullptr), porous_(volume_follows_porosity(world)) {
+    need_volume_share(world, volume_);
+    if (porous_) volume_.fields.push_back({"water", &fields::gradient_scale, Access::write});
   }
 
   std::string acts_on() const override { return "water"; }
@@ -136,7 +144,8 @@ class WaterReinitialization final : public Effect<Dim> {
     if (world.model().numerics.transport_velocity) world.records("water", 1);
     const Kernel<Dim> kernel(water_->smoothing_length());
     lattice_ = lattice_sums(kernel, water_->spacing()).number;
-    if (porous_) spread_ = std::make_unique<LatticeNumber<Dim>>(kernel, water_->spacing());
+    moment_ = lattice_sums(kernel, water_->spacing()).moment;
+    if (porous_) spread_ = std::make_unique<SpreadLattice<Dim>>(kernel, water_->spacing());
   }
 
   void apply(World<Dim>& world) override {
@@ -162,11 +171,16 @@ class WaterReinitialization final : public Effect<Dim> {
     const ArrangementPair<Dim, false> wall_pair{pair.kernel};
     const Field<double>* n = Porous ? volume_share(world) : nullptr;
     const auto at_rest = [&](Index i) { return Porous ? m[i] / (rho0 * (*n)[i]) : m[i] / rho0; };
+    auto& rho = water_->scalar(fields::density);
+    const bool by_target = world.model().numerics.transport_target_volume;
     auto& records = world.records("water").template get<T>();
     // The volume at rest, so that compression does not feed back on the arrangement.
     parallel_for(water_->size(), [&](Index i) {
       records[i][water_slot::volume] = static_cast<T>(at_rest(i));
-      if constexpr (Porous) records[i][pair.fraction] = static_cast<T>((*n)[i]);
+      if constexpr (Porous) {
+        records[i][pair.fraction] = static_cast<T>((*n)[i]);
+        records[i][pair.swelling] = static_cast<T>(by_target ? rho0 / rho[i] : (*n)[i]);
+      }
     });
     const auto walk = [&](const NeighborList& list, const Records<Dim, T>& sources, const auto& with_pair, Index b, Sums& sums) {
       gather_block<std::decay_t<decltype(with_pair)>::template Sums>(
@@ -178,7 +192,7 @@ class WaterReinitialization final : public Effect<Dim> {
     const Records<Dim, T>* wall_records = has_walls_ ? &world.records("walls").template get<T>() : nullptr;
     Records<Dim, T>* second = transport ? &world.records("water", 1).template get<T>() : nullptr;
     const double self = pair.kernel.w(0.0), volume_at_dp = std::pow(water_->spacing(), Dim);
-    auto& rho = water_->scalar(fields::density);
+    Field<double>* scale = Porous ? &water_->scalar(fields::gradient_scale) : nullptr;
     auto& surface = water_->tag(fields::surface);
     parallel_blocks(water_->size(), block_size, [&](Index begin, Index end, Index b) {
       Sums sums;
@@ -188,8 +202,13 @@ class WaterReinitialization final : public Effect<Dim> {
         const Arrangement<Dim>& s = sums[static_cast<std::size_t>(i - begin)];
         // The divergence of position is Dim in the bulk; three quarters of it tell the surface.
         surface[i] = -s.moment.trace() < 0.75 * Dim ? 1 : 0;
+        double lattice = lattice_;
+        if constexpr (Porous) {
+          const LatticeSums spread = (*spread_)(volume_at_dp * rho0 * (*n)[i] / m[i]);
+          lattice = spread.number;
+          (*scale)[i] = (*n)[i] < 1 ? gradient_factor(-s.moment.trace() / Dim, spread.moment) : 1;
+        }
         if (summation) {
-          const double lattice = Porous ? (*spread_)(volume_at_dp * rho0 * (*n)[i] / m[i]) : lattice_;
           const double summed = rho0 * (s.number + self * at_rest(i)) / lattice;
           // A sum that falls short is a surface or a splash, not a rarefaction: it keeps its density,
           // up to the factor by which rho exceeds rho0.
@@ -212,6 +231,12 @@ class WaterReinitialization final : public Effect<Dim> {
       slot[Pair::surface_normal + k] = static_cast<T>(normal[k]);
       slot[Pair::gradient + k] = static_cast<T>(gradient[k]);
     }
+  }
+
+  // The moment of the particles around says how weak their sums are; where it is cut off at a surface, that of a lattice does.
+  double gradient_factor(double moment, double lattice) const {
+    const double full = std::clamp((moment / lattice - 0.85) / 0.1, 0.0, 1.0);
+    return std::sqrt(moment_ / (full * moment + (1 - full) * lattice));
   }
 
   // P^p of Eqs. 88 and 89 on the sum of gradients: where the porosity changes within a smoothing length, the spacing changes
@@ -272,9 +297,9 @@ class WaterReinitialization final : public Effect<Dim> {
 
   bool has_walls_, porous_;
   Needs volume_;  // what the target volume needs beside the mass
-  std::unique_ptr<LatticeNumber<Dim>> spread_;
+  std::unique_ptr<SpreadLattice<Dim>> spread_;
   ParticleSet<Dim>* water_ = nullptr;
-  double lattice_ = 1;
+  double lattice_ = 1, moment_ = 1;
 };
 
 const RegisterEffect<WaterReinitialization> registered;

@@ -56,6 +56,8 @@ inline constexpr FieldSpec drag_quadratic{"drag_quadratic", scalar, derived, uni
                                           "drag per volume and square of the relative velocity, Eq. 31"};
 inline constexpr FieldSpec pressure_force{"pressure_force", vector, derived, unit::force_density, "minus the gradient of the water pressure"};
 inline constexpr FieldSpec soil_velocity{"soil_velocity", vector, derived, unit::speed, "velocity of the soil at a water particle, Eq. 57"};
+inline constexpr FieldSpec gradient_scale{"gradient_scale", scalar, derived, unit::none,
+                                          "root of what the sums of gradients of water in soil are multiplied by to see a linear field as it is"};
 inline constexpr FieldSpec drag_acceleration{"drag_acceleration", vector, state, unit::acceleration,
                                              "acceleration of water by drag in the last acoustic step"};
 
@@ -67,6 +69,6 @@ inline constexpr const FieldSpec* all[] = {&id, &part, &position, &velocity, &ac
                                            &volume_fraction, &volume_fraction_rate, &initial_volume_fraction, &stress, &crowding, &gradient_correction,
                                            &plastic_strain, &plastic_work, &water_acceleration, &pore_pressure, &saturation,
                                            &water_fraction, &soil_sum, &inverse_soil_mass, &drag_linear, &drag_quadratic,
-                                           &pressure_force, &soil_velocity, &drag_acceleration};
+                                           &pressure_force, &soil_velocity, &gradient_scale, &drag_acceleration};
 
 }  // namespace sphgeo::fields

@@ -9,19 +9,25 @@ namespace {
 /// Height of the free surface above a place: where the kernel sum of the water falls to one half.
 struct WaterLevelProbe final : Probe {
   Vec3 at = Vec3::Zero();
+  std::optional<Vec3> minus;
 
   static Schema<WaterLevelProbe> schema() {
     Schema<WaterLevelProbe> s("water_level", "height of the topmost water surface at a place");
     s.required("at", &WaterLevelProbe::at, unit::length, "the place; its z is ignored");
+    s.optional("minus", &WaterLevelProbe::minus, unit::length, "a second place, whose level 'difference' takes off; auto: no difference");
     return s;
   }
   std::vector<Column> columns(const Model&) const override {
-    return {{"level", "m", "z of the free surface; empty where there is no water"}};
+    std::vector<Column> out{{"level", "m", "z of the free surface; empty where there is no water"}};
+    if (minus) out.push_back({"difference", "m", "level less that at the second place"});
+    return out;
   }
   std::vector<FieldRequest> needs() const override { return {{"water", &fields::volume}}; }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
-    out[0] = surface_heights(scene, "water", {at})[0];
+    const auto levels = surface_heights(scene, "water", minus ? std::vector<Vec3>{at, *minus} : std::vector<Vec3>{at});
+    out[0] = levels[0];
+    if (minus && levels[0] && levels[1]) out[1] = *levels[0] - *levels[1];
   }
 };
 

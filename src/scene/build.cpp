@@ -137,9 +137,10 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
     moves = moves || wall.motion.has_value();
   }
   const double dp = model.resolution;
-  // Pairs use the larger smoothing length of both sets: that of walls must not exceed any other.
+  // Pairs use the larger smoothing length of both sets. Of one phase alone, that of the walls is no larger than its own.
+  // With water and soil they are that of the larger one: the share of a kernel that lies in walls is asked for at both.
   const double h = only_soil(model) ? soil_smoothing_length(model)
-                   : has_soil(model) ? std::min(water_smoothing_length(model), soil_smoothing_length(model)) : water_smoothing_length(model);
+                   : has_soil(model) ? std::max(water_smoothing_length(model), soil_smoothing_length(model)) : water_smoothing_length(model);
   ParticleSet<Dim>& set = scene.world->add_set("walls", "wall", dp, h, moves);
   for (const FieldSpec* f : {&fields::normal, &fields::no_slip}) set.require(*f);
   if (moves)
