@@ -57,8 +57,8 @@ class SoilVelocity final : public Effect<Dim> {
       using T = decltype(number);
       auto& records = world.records("water").template get<T>();
       for_targets(world.list("water", "soil"), [&](Index i) {
-        for (int k = 0; k < Dim; ++k)
-          records[i][water_slot::velocity + k] = static_cast<T>(n[i] * v[i][k] + (1 - n[i]) * soil_velocity[i][k]);
+        const Vec<Dim> flux = n[i] * v[i] + (1 - n[i]) * soil_velocity[i];
+        for (int k = 0; k < Dim; ++k) records[i][water_slot::velocity + k] = static_cast<T>(flux[k]);
       });
     });
   }

@@ -98,7 +98,8 @@ struct Arrangement {
 /// In soil every sum is taken with the target volumes m / (rho0 n^w) of Eq. 88. So the density, too, is told by how far the
 /// particles are from the spacing that the porosity asks for. The print's sum of m W, divided by the particle's own n^w,
 /// compares a fraction that was smoothed twice with one that was smoothed once: at a step of porosity they differ by
-/// several percent, which the equation of state would answer with pressures of several dynamic heads.
+/// several percent, which the equation of state would answer with pressures of several dynamic heads. And in pores the sum is only
+/// followed as fast as the water can flow there (see pore_share).
 ///
 /// The shift alone takes the volumes m / (rho n^w) of now. With those at rest (Eq. 88) it works against the compression of water
 /// at depth, without end: particles that stay where they are then have a velocity against it, and the drag of fine soil answers
@@ -121,7 +122,11 @@ class WaterReinitialization final : public Effect<Dim> {
   explicit WaterReinitialization(const World<Dim>& world)
       : has_walls_(world.find("walls") != nullptr), porous_(volume_follows_porosity(world)) {
     need_volume_share(world, volume_);
-    if (porous_) volume_.fields.push_back({"water", &fields::gradient_scale, Access::write});
+    if (!porous_) return;
+    volume_.fields.push_back({"water", &fields::gradient_scale, Access::write});
+    if (world.model().numerics.transport_velocity) volume_.fields.push_back({"water", &fields::acceleration, Access::read});
+    volume_.fields.push_back({"water", &fields::drag_linear, Access::read});
+    volume_.fields.push_back({"water", &fields::drag_quadratic, Access::read});
   }
 
   std::string acts_on() const override { return "water"; }
@@ -210,9 +215,11 @@ class WaterReinitialization final : public Effect<Dim> {
         }
         if (summation) {
           const double summed = rho0 * (s.number + self * at_rest(i)) / lattice;
+          const bool in_pores = Porous && ((*n)[i] < 1 || s.fraction.squaredNorm() > 0);
           // A sum that falls short is a surface or a splash, not a rarefaction: it keeps its density,
           // up to the factor by which rho exceeds rho0.
-          rho[i] = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
+          if (!in_pores) rho[i] = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
+          else if (-s.moment.trace() > 0.9 * Dim) rho[i] += pore_share(world, i) * (summed - rho[i]);
           // A free surface bears no tension; a lonely particle would be drawn into a wall by it.
           if (surface[i]) rho[i] = std::max(rho[i], rho0);
         }
@@ -231,6 +238,19 @@ class WaterReinitialization final : public Effect<Dim> {
       slot[Pair::surface_normal + k] = static_cast<T>(normal[k]);
       slot[Pair::gradient + k] = static_cast<T>(gradient[k]);
     }
+  }
+
+  // How much of the sum's density a particle in pores takes over. Particles never lie so evenly that their sum says less than
+  // some thousandths of a density, a pressure of several heads. In clear water they get out of each other's way
+  // at once. In pores the pressure spreads with the diffusivity n^2 rho c^2 / D only, D the drag, and until then the soil feels it.
+  // So the share is taken at a thousandth of the rate at which a smoothing length evens out: what is left is a
+  // thousandth of the sum's error. Between, the continuity equation alone moves the density.
+  double pore_share(const World<Dim>& world, Index i) const {
+    const double n = water_->scalar(fields::water_fraction)[i], speed = water_->vector(fields::velocity)[i].norm();
+    const double drag = water_->scalar(fields::drag_linear)[i] + water_->scalar(fields::drag_quadratic)[i] * speed;
+    const double evening = n * water_->constant("sound_speed") / water_->smoothing_length();
+    const double steps = 1e-3 * evening * evening * water_->constant("density") * world.clock.dt_advection;
+    return steps < drag ? steps / drag : 1.0;
   }
 
   // The moment of the particles around says how weak their sums are; where it is cut off at a surface, that of a lattice does.
@@ -261,6 +281,11 @@ class WaterReinitialization final : public Effect<Dim> {
     const double factor = 2 * world.model().numerics.transport_coefficient * h * h;
     const bool tangential = world.model().numerics.transport_at_surface == "tangential";
     auto& x = water_->vector(fields::position);
+    const Field<double>* share = volume_share(world);
+    const Field<Vec<Dim>>* a = porous_ ? &water_->vector(fields::acceleration) : nullptr;
+    const Field<Vec<Dim>>* drag = water_->has(fields::drag_acceleration) ? &water_->vector(fields::drag_acceleration) : nullptr;
+    auto& rho = water_->scalar(fields::density);
+    const double sound = water_->constant("sound_speed");
     const auto& first = world.records("water", 0).template get<T>();
     const auto& second = world.records("water", 1).template get<T>();
     gather<Pair::template Sums>(
@@ -276,15 +301,22 @@ class WaterReinitialization final : public Effect<Dim> {
           if (surface || near.share > 0) {
             if (!tangential) return;
             // The list leaves the particle itself out.
-            const double share = near.share + (surface ? 1.0 : 0.0);
+            const double weight = near.share + (surface ? 1.0 : 0.0);
             const Vec<Dim> mean = to_vec(near.normal) + normal;
             // Surfaces that face each other, as of a thin film or a lonely particle, leave no
             // direction along which anything may move.
             const double length = mean.norm();
-            if (length < 0.5 * share) return;
+            if (length < 0.5 * weight) return;
             move -= (mean.dot(move) / (length * length)) * mean;
           }
           x[i] += move;
+          if (share && (*share)[i] < 1) {
+            // It comes to another pressure, grad p = rho (g - dv/dt + drag), and takes it over. Were it to keep its own, it would flow
+            // back, for ever, and the soil would feel the drag of that flow.
+            Vec<Dim> pull = world.pull(x[i]) - (*a)[i];
+            if (drag) pull += (*drag)[i];
+            rho[i] += rho[i] * pull.dot(move) / (sound * sound);
+          }
         });
   }
 
