@@ -96,4 +96,4 @@ class Relax(ProgramTest):
 
 
 if __name__ == "__main__":
-    main(Relax)
+    main()
