@@ -3,7 +3,7 @@
 
 _sphgeo() {
   local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} command=${COMP_WORDS[1]}
-  local commands="run check list show reference schema bench"
+  local commands="run check relax list show reference schema bench"
   local options=""
   COMPREPLY=()
 
@@ -14,6 +14,7 @@ _sphgeo() {
   case $command in
     run) options="--help -h --set --output -o --threads --overwrite --resume --max-hours --max-steps --verify --quiet -q" ;;
     check) options="--help -h --set --explain --json --no-calibrate --threads" ;;
+    relax) options="--help -h --set --output -o --threads --overwrite --verify --quiet -q" ;;
     bench) options="--help -h --json --scene --size --precision --seconds --repeats" ;;
     list | show | reference | schema) options="--help -h" ;;
     *) return ;;
@@ -37,7 +38,7 @@ _sphgeo() {
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
   elif [[ $command == show ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$("${COMP_WORDS[0]}" list 2>/dev/null | sed -n 's/^  \([^ ]*\) .*/\1/p')" -- "$word")
-  elif [[ $command == run || $command == check ]]; then
+  elif [[ $command == run || $command == check || $command == relax ]]; then
     # Decks, and folders on the way to them.
     mapfile -t COMPREPLY < <(compgen -f -X '!*.yaml' -- "$word"; compgen -d -S / -- "$word")
     compopt -o nospace 2>/dev/null

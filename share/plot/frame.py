@@ -3,6 +3,7 @@
 
     share/plot/frame.py RUN --field pressure --time 0.2 0.5 1 -o dam.png
     share/plot/frame.py RUN --set water --field velocity --view 30 20 -o dam3.png
+    share/plot/frame.py RELAXED --field number_density --time 0 100 --moment "step {:.0f}" -o pores.png
 
 Takes the frames nearest to the given times (the last one without --time), one panel each. Vectors are
 coloured by their length. A 3D run is seen from --view AZIMUTH ELEVATION, in degrees.
@@ -33,6 +34,8 @@ def arguments():
     parser.add_argument("--window", nargs=4, type=float, metavar=("X0", "X1", "Z0", "Z1"),
                         help="part of the picture plane, m")
     parser.add_argument("--view", nargs=2, type=float, default=(-60, 20), metavar=("AZIMUTH", "ELEVATION"))
+    parser.add_argument("--moment", default="t = {:.4g} s", metavar="TEXT",
+                        help="above each panel, {} for the time; of 'sphgeo relax': --moment 'step {:.0f}'")
     parser.add_argument("--title", help="above the picture; the deck's own without it")
     parser.add_argument("--size", type=float, help="diameter of a particle, m; the resolution without it")
     parser.add_argument("--columns", type=int, default=3, help="panels in a row")
@@ -183,7 +186,7 @@ def main():
         panel.set_axis_off()
     for panel, time, grids in zip(panels.flat, times, moments):
         mapper = paint(panel, grids, given, size, camera, limits)
-        panel.set_title(f"t = {time:.4g} s", fontsize=9)
+        panel.set_title(given.moment.format(time), fontsize=9)
         if flat:
             panel.set_xlabel("x (m)", fontsize=8)
             panel.set_ylabel("z (m)", fontsize=8)

@@ -20,7 +20,8 @@ namespace {
 constexpr double whole = 1 - 1e-9;
 // Finer cells along the edge of one that a surface cuts.
 int parts(int dim) { return dim == 3 ? 4 : 12; }
-// Width of the draws about the middle of their stretch: wider ones leave clumps, see share/validation.
+// Width of the draws about the middle of their stretch. 0 would leave no choice to the seed; after 100 steps 1 gives
+// no other spread than 0.5 (0.2 to 0.7 %), but clumps more at the start where porosity varies (7 against 5.5 %).
 constexpr double draw_width = 0.5;
 
 /// The lattice of fill_lattice, with the cells whose centres lie outside.
