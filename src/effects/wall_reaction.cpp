@@ -8,6 +8,7 @@ namespace {
 template <int Dim>
 struct WaterForceOnWall {
   WallPair<Dim> wall;
+  static constexpr int scale = 13;  ///< slot of what gradient_scale() makes of the force, squared
 
   template <class T>
   struct Sums {
@@ -16,7 +17,7 @@ struct WaterForceOnWall {
   template <class T>
   void operator()(Sums<T>& sum, const Record<Dim, T, 2>& i, const Record<Dim, T, 2>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
-    sum.force -= j[water_slot::volume] * wall.force(j, i, T(-1) * r, r2);
+    sum.force -= (j[water_slot::volume] * j[scale]) * wall.force(j, i, T(-1) * r, r2);
   }
 };
 
@@ -55,6 +56,7 @@ class WallReaction final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& second = world.records("water", 1).template get<T>();
+      const Field<double>* scale = gradient_scale(world);
       const Field<Vec<Dim>>* drag = water_->has(fields::drag_acceleration) ? &water_->vector(fields::drag_acceleration) : nullptr;
       parallel_for(water_->size(), [&](Index i) {
         T* slot = second[i] - record_size;
@@ -62,6 +64,7 @@ class WallReaction final : public Effect<Dim> {
         if (drag) pull += (*drag)[i];
         for (int k = 0; k < Dim; ++k) slot[water_slot::pull + k] = static_cast<T>(pull[k]);
         slot[water_slot::density] = static_cast<T>(rho[i]);
+        slot[pair.scale] = static_cast<T>(scale ? (*scale)[i] * (*scale)[i] : 1.0);
       });
       gather<WaterForceOnWall<Dim>::template Sums>(
           world.list("walls", "water"),

@@ -101,7 +101,8 @@ struct Arrangement {
 /// several percent, which the equation of state would answer with pressures of several dynamic heads. And in pores the sum is only
 /// followed as fast as the water can flow there (see pore_share).
 ///
-/// The shift alone takes the volumes m / (rho n^w) of now. With those at rest (Eq. 88) it works against the compression of water
+/// The gradient of the shift weighs every particle as the pressure force does, with the scale of gradients: so the places that the
+/// shift leads to are those where a constant pressure has no resultant. It takes the volumes m / (rho n^w) of now. With those at rest (Eq. 88) it works against the compression of water
 /// at depth, without end: particles that stay where they are then have a velocity against it, and the drag of fine soil answers
 /// to that velocity with more than the weight of the water.
 template <int Dim>
@@ -123,7 +124,7 @@ class WaterReinitialization final : public Effect<Dim> {
       : has_walls_(world.find("walls") != nullptr), porous_(volume_follows_porosity(world)) {
     need_volume_share(world, volume_);
     if (!porous_) return;
-    volume_.fields.push_back({"water", &fields::gradient_scale, Access::write});
+    volume_.fields.push_back({"water", &fields::gradient_scale, Access::update});
     if (world.model().numerics.transport_velocity) volume_.fields.push_back({"water", &fields::acceleration, Access::read});
     volume_.fields.push_back({"water", &fields::drag_linear, Access::read});
     volume_.fields.push_back({"water", &fields::drag_quadratic, Access::read});
@@ -177,6 +178,7 @@ class WaterReinitialization final : public Effect<Dim> {
     const Field<double>* n = Porous ? volume_share(world) : nullptr;
     const auto at_rest = [&](Index i) { return Porous ? m[i] / (rho0 * (*n)[i]) : m[i] / rho0; };
     auto& rho = water_->scalar(fields::density);
+    Field<double>* scale = Porous ? &water_->scalar(fields::gradient_scale) : nullptr;
     const bool by_target = world.model().numerics.transport_target_volume;
     auto& records = world.records("water").template get<T>();
     // The volume at rest, so that compression does not feed back on the arrangement.
@@ -184,7 +186,8 @@ class WaterReinitialization final : public Effect<Dim> {
       records[i][water_slot::volume] = static_cast<T>(at_rest(i));
       if constexpr (Porous) {
         records[i][pair.fraction] = static_cast<T>((*n)[i]);
-        records[i][pair.swelling] = static_cast<T>(by_target ? rho0 / rho[i] : (*n)[i]);
+        const double before = (*scale)[i] > 0 ? (*scale)[i] : 1;
+        records[i][pair.swelling] = static_cast<T>(before * (by_target ? rho0 / rho[i] : (*n)[i]));
       }
     });
     const auto walk = [&](const NeighborList& list, const Records<Dim, T>& sources, const auto& with_pair, Index b, Sums& sums) {
@@ -197,11 +200,13 @@ class WaterReinitialization final : public Effect<Dim> {
     const Records<Dim, T>* wall_records = has_walls_ ? &world.records("walls").template get<T>() : nullptr;
     Records<Dim, T>* second = transport ? &world.records("water", 1).template get<T>() : nullptr;
     const double self = pair.kernel.w(0.0), volume_at_dp = std::pow(water_->spacing(), Dim);
-    Field<double>* scale = Porous ? &water_->scalar(fields::gradient_scale) : nullptr;
     auto& surface = water_->tag(fields::surface);
     parallel_blocks(water_->size(), block_size, [&](Index begin, Index end, Index b) {
       Sums sums;
       walk(water, records, pair, b, sums);
+      if constexpr (Porous)  // as a water particle like itself would
+        for (Index i = begin; i < end; ++i)
+          sums[static_cast<std::size_t>(i - begin)].gradient /= (*scale)[i] > 0 ? (*scale)[i] : 1;
       if (walls) walk(*walls, *wall_records, wall_pair, b, sums);
       for (Index i = begin; i < end; ++i) {
         const Arrangement<Dim>& s = sums[static_cast<std::size_t>(i - begin)];

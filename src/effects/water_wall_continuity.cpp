@@ -51,12 +51,13 @@ class WaterWallContinuity final : public Effect<Dim> {
     const auto& rho = water_->scalar(fields::density);
     auto& rate = water_->scalar(fields::density_rate);
     const Field<double>* n = volume_share(world);
+    const Field<double>* scale = gradient_scale(world);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       gather<WallDivergence<Dim>::template Sums>(
           world.list("water", "walls"), world.records("water").template get<T>(),
           with(world.records("walls", 0).template get<T>(), world.records("walls", 1).template get<T>()), pair,
-          [&](Index i, const auto& sum) { rate[i] += rho[i] * (n ? sum.divergence / (*n)[i] : sum.divergence); });
+          [&](Index i, const auto& sum) { rate[i] += rho[i] * (n ? (*scale)[i] * (*scale)[i] * sum.divergence / (*n)[i] : sum.divergence); });
     });
   }
 

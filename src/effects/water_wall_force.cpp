@@ -79,6 +79,7 @@ class WaterWallForce final : public Effect<Dim> {
     const WaterConstants w = WaterConstants::of(world);
     const Pair pair{WallPair<Dim>(w, water_->smoothing_length(), water_->spacing())};
     const Field<double>* n = volume_share(world);
+    const Field<double>* scale = gradient_scale(world);
     Field<Vec<Dim>>* pressure_force = porous ? &water_->vector(fields::pressure_force) : nullptr;
     const auto& rho = water_->scalar(fields::density);
     auto& sum_of_forces = water_->vector(fields::acceleration_sum);
@@ -91,8 +92,10 @@ class WaterWallForce final : public Effect<Dim> {
           with(world.records("walls", 0).template get<T>(), world.records("walls", 1).template get<T>()), pair,
           [&](Index i, const auto& sum) {
             if constexpr (porous) {
-              (*pressure_force)[i] += to_vec(sum.pressure);
-              sum_of_forces[i] += (to_vec(sum.pressure) + to_vec(sum.friction) / (n ? (*n)[i] : 1.0)) / rho[i];
+              Vec<Dim> pressure = to_vec(sum.pressure);
+              if (scale) pressure *= (*scale)[i] * (*scale)[i];
+              (*pressure_force)[i] += pressure;
+              sum_of_forces[i] += (pressure + to_vec(sum.friction) / (n ? (*n)[i] : 1.0)) / rho[i];
             } else {
               sum_of_forces[i] += to_vec(sum.force) / rho[i];
             }

@@ -56,7 +56,7 @@ inline constexpr FieldSpec drag_quadratic{"drag_quadratic", scalar, derived, uni
                                           "drag per volume and square of the relative velocity, Eq. 31"};
 inline constexpr FieldSpec pressure_force{"pressure_force", vector, derived, unit::force_density, "minus the gradient of the water pressure"};
 inline constexpr FieldSpec soil_velocity{"soil_velocity", vector, derived, unit::speed, "velocity of the soil at a water particle, Eq. 57"};
-inline constexpr FieldSpec gradient_scale{"gradient_scale", scalar, derived, unit::none,
+inline constexpr FieldSpec gradient_scale{"gradient_scale", scalar, state, unit::none,
                                           "root of what the sums of gradients of water in soil are multiplied by to see a linear field as it is"};
 inline constexpr FieldSpec drag_acceleration{"drag_acceleration", vector, state, unit::acceleration,
                                              "acceleration of water by drag in the last acoustic step"};
