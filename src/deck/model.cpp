@@ -270,8 +270,8 @@ Schema<Expect> Expect::schema() {
   s.optional("x_shift", &Expect::x_shift, unit::none,
              "added to the scaled abscissae, for a table whose clock started at another moment");
   s.optional("y_scale", &Expect::y_scale, unit::none, "the table's ordinates are multiplied by it");
-  s.optional("norm", &Expect::norm, unit::none, "of the difference of two curves")
-      .choices({"l2", "max"});
+  s.optional("norm", &Expect::norm, unit::none, "of the difference of two curves: l2 and max by the range of the reference, relative_l2 by its root mean square")
+      .choices({"l2", "max", "relative_l2"});
   s.required("tolerance", &Expect::tolerance, unit::none,
              "largest error; for measure below or above: the bound itself");
   s.optional("tolerance_kind", &Expect::tolerance_kind, unit::none,

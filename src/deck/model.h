@@ -117,7 +117,7 @@ struct Expect {
   double x_scale = 1.0;
   double x_shift = 0.0;          ///< added to the scaled abscissae: another origin of time
   double y_scale = 1.0;
-  std::string norm = "l2";  ///< l2 | max
+  std::string norm = "l2";  ///< l2 | max | relative_l2
   double tolerance = 0.0;
   std::string tolerance_kind = "relative";  ///< relative | absolute
   std::string measure = "within";           ///< within | below | above

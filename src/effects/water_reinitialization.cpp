@@ -102,9 +102,10 @@ struct Arrangement {
 /// followed as fast as the water can flow there (see pore_share).
 ///
 /// The gradient of the shift weighs every particle as the pressure force does, with the scale of gradients: so the places that the
-/// shift leads to are those where a constant pressure has no resultant. It takes the volumes m / (rho n^w) of now. With those at rest (Eq. 88) it works against the compression of water
-/// at depth, without end: particles that stay where they are then have a velocity against it, and the drag of fine soil answers
-/// to that velocity with more than the weight of the water.
+/// shift leads to are those where a constant pressure has no resultant. Where the drag keeps particles from following the sum, it
+/// takes the volumes m / (rho n^w) of now. With those at rest (Eq. 88) it works against the compression of water at depth,
+/// without end: particles that stay where they are then have a velocity against it, and the drag of fine soil answers to
+/// that velocity with more than the weight of the water.
 template <int Dim>
 class WaterReinitialization final : public Effect<Dim> {
  public:
@@ -187,7 +188,8 @@ class WaterReinitialization final : public Effect<Dim> {
       if constexpr (Porous) {
         records[i][pair.fraction] = static_cast<T>((*n)[i]);
         const double before = (*scale)[i] > 0 ? (*scale)[i] : 1;
-        records[i][pair.swelling] = static_cast<T>(before * (by_target ? rho0 / rho[i] : (*n)[i]));
+        const double held = (*n)[i] < 1 ? 1 - pore_share(world, i) : 0;
+        records[i][pair.swelling] = static_cast<T>(before * (by_target ? 1 + held * (rho0 / rho[i] - 1) : (*n)[i]));
       }
     });
     const auto walk = [&](const NeighborList& list, const Records<Dim, T>& sources, const auto& with_pair, Index b, Sums& sums) {
@@ -220,11 +222,11 @@ class WaterReinitialization final : public Effect<Dim> {
         }
         if (summation) {
           const double summed = rho0 * (s.number + self * at_rest(i)) / lattice;
-          const bool in_pores = Porous && ((*n)[i] < 1 || s.fraction.squaredNorm() > 0);
+          const bool in_pores = Porous && (*n)[i] < 1;
           // A sum that falls short is a surface or a splash, not a rarefaction: it keeps its density,
           // up to the factor by which rho exceeds rho0.
-          if (!in_pores) rho[i] = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
-          else if (-s.moment.trace() > 0.9 * Dim) rho[i] += pore_share(world, i) * (summed - rho[i]);
+          const double told = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
+          rho[i] = in_pores ? rho[i] + pore_share(world, i) * (told - rho[i]) : told;
           // A free surface bears no tension; a lonely particle would be drawn into a wall by it.
           if (surface[i]) rho[i] = std::max(rho[i], rho0);
         }

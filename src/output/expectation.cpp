@@ -63,7 +63,7 @@ void measure_curve(const Expect& e, Samples samples, ExpectResult& result) {
     result.note = fmt::format("{} of {} points of the reference lie outside of the samples",
                               d->skipped, d->used + d->skipped);
   if (d->used >= least_coverage * (d->used + d->skipped))
-    result.value = e.norm == "max" ? d->max : d->l2;
+    result.value = e.norm == "max" ? d->max : e.norm == "relative_l2" ? d->relative_l2 : d->l2;
 }
 
 void judge(const Expect& e, ExpectResult& result) {

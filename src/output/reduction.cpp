@@ -120,7 +120,7 @@ std::optional<CurveDifference> compare_curve(const Samples& s, std::span<const d
   CurveDifference d;
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
-  double squares = 0;
+  double squares = 0, reference = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (!std::isfinite(x[i]) || !std::isfinite(y[i])) continue;
     lowest = std::min(lowest, y[i]);
@@ -132,11 +132,13 @@ std::optional<CurveDifference> compare_curve(const Samples& s, std::span<const d
     }
     ++d.used;
     squares += (*value - y[i]) * (*value - y[i]);
+    reference += y[i] * y[i];
     d.max = std::max(d.max, std::abs(*value - y[i]));
   }
   const double range = highest - lowest;
   if (d.used == 0 || !(range > 0)) return {};
   d.l2 = std::sqrt(squares / d.used) / range;
+  d.relative_l2 = std::sqrt(squares / reference);
   d.max /= range;
   return d;
 }

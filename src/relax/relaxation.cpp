@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "geometry/normal.h"
 #include "relax/missing_support.h"
+#include "relax/smooth_fraction.h"
 #include "sph/cell_grid.h"
 
 namespace sphgeo {
@@ -27,7 +28,6 @@ class Relaxer {
     h_.assign(n, 0);
     density_.assign(n, 1);
     depth_.assign(n, 0);
-    where_.assign(n, {-1, 0});
     move_.assign(n, Vec3::Zero());
     way_.assign(n, 0);
     for (std::size_t k = 0; k < n; ++k)
@@ -40,6 +40,9 @@ class Relaxer {
       at(depth_, i) = 0;
       bound(i);
     });
+    Aabb box;
+    for (const Index i : moving_) box.extend(at(r_, i));
+    if (!moving_.empty()) smooth_.emplace(water_, target_, box.grown(2 * dp_), dp_, options_.water_h, Dim);
     parallel_for(count(), [&](Index i) { set_target(i); });
     out.start_density = density_;
     if (!moving_.empty()) {
@@ -100,13 +103,9 @@ class Relaxer {
 
   double smoothing_length(double fraction) const { return options_.h_factor * dp_ * std::pow(fraction, -1.0 / Dim); }
 
-  /// Target volume and spacing, Eqs. 81 and 82. The soil around a particle is looked up again only when it has
-  /// moved as far as its surface may be.
+  /// Target volume and spacing, Eqs. 81 and 82. What is not free lies far from all soil.
   void set_target(Index i) {
-    const Vec3& p = at(r_, i);
-    WaterTarget::Where& w = at(where_, i);
-    if (w.holds <= 0) w = target_.locate(p);
-    const double fraction = std::clamp(target_.fraction_in(w.soil, p), WaterTarget::smallest, 1.0);
+    const double fraction = free_[static_cast<std::size_t>(i)] ? (*smooth_)(at(r_, i)) : 1;
     at(fraction_, i) = fraction;
     at(volume_, i) = std::pow(dp_, Dim) / fraction;
     at(h_, i) = smoothing_length(fraction);
@@ -155,7 +154,6 @@ class Relaxer {
       bound(i);
       const double way = (at(r_, i) - before).norm();
       at(way_, i) = way / spacing(i);
-      at(where_, i).holds -= way;
       set_target(i);
     });
   }
@@ -170,7 +168,6 @@ class Relaxer {
     for (int k = 0; k < 3 && d > (k == 0 ? -0.5 : -0.499) * dp_; ++k) {
       const Vec3 way = (d + 0.5 * dp_) * outward_normal(water_, p, 0.05 * dp_, Dim);
       p -= way;
-      at(where_, i).holds -= way.norm();
       d = water_.signed_distance(p);
     }
     at(depth_, i) = d;
@@ -242,7 +239,7 @@ class Relaxer {
   std::vector<double> volume_, fraction_, h_, density_;
   std::vector<double> depth_;  // upper limit of the signed distance
   std::vector<double> way_;    // of the last step, over the spacing
-  std::vector<WaterTarget::Where> where_;
+  std::optional<SmoothFraction> smooth_;
   std::vector<Vec3> move_;
   std::vector<Vec<Dim>> places_;
   double largest_h_ = 0;
