@@ -260,6 +260,7 @@ Schema<Expect> Expect::schema() {
   s.optional("at", &Expect::at, unit::time, "the time of the value, for reduce: at").at_least(0);
   s.optional("from", &Expect::from, unit::time, "start of the time window; auto: the first sample");
   s.optional("to", &Expect::to, unit::time, "end of the time window; auto: the last sample");
+  s.optional("shift", &Expect::shift, unit::none, "added to the measured numbers, before the scale");
   s.optional("scale", &Expect::scale, unit::none, "the measured numbers are divided by it");
   s.optional("reference", &Expect::reference, unit::none, "the number that should come out");
   s.optional("reference_csv", &Expect::reference_csv, unit::none,

@@ -96,9 +96,9 @@ struct Output {
 };
 
 /// A result the deck claims. A probe's column is cut to [from, to] and
-///   - reduced to one number: value = reduced / scale; or
+///   - reduced to one number: value = (reduced + shift) / scale; or
 ///   - with `reduce: curve`, compared with the table reference_csv: value = norm of
-///     (column / scale - y_scale * y) over the table's abscissae x_scale * x that lie in [from,
+///     ((column + shift) / scale - y_scale * y) over the table's abscissae x_scale * x that lie in [from,
 ///     to], divided by the range (max - min) of y_scale * y there.
 /// `within`: |value - reference| <= tolerance (times |reference| if relative); for a curve
 /// value <= tolerance. `below`: value <= tolerance. `above`: value >= tolerance.
@@ -109,6 +109,7 @@ struct Expect {
   std::optional<double> at;    ///< s, for `reduce: at`
   std::optional<double> from;  ///< s
   std::optional<double> to;    ///< s
+  double shift = 0.0;          ///< added to the column before it is scaled
   double scale = 1.0;
   std::optional<double> reference;
   std::optional<FilePath> reference_csv;

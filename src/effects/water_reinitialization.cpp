@@ -226,7 +226,7 @@ class WaterReinitialization final : public Effect<Dim> {
           // A sum that falls short is a surface or a splash, not a rarefaction: it keeps its density,
           // up to the factor by which rho exceeds rho0.
           const double told = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
-          rho[i] = in_pores ? rho[i] + pore_share(world, i) * (told - rho[i]) : told;
+          rho[i] = in_pores ? rho[i] + pore_change(pore_share(world, i), told - rho[i], rho0) : told;
           // A free surface bears no tension; a lonely particle would be drawn into a wall by it.
           if (surface[i]) rho[i] = std::max(rho[i], rho0);
         }
@@ -250,14 +250,20 @@ class WaterReinitialization final : public Effect<Dim> {
   // How much of the sum's density a particle in pores takes over. Particles never lie so evenly that their sum says less than
   // some thousandths of a density, a pressure of several heads. In clear water they get out of each other's way
   // at once. In pores the pressure spreads with the diffusivity n^2 rho c^2 / D only, D the drag, and until then the soil feels it.
-  // So the share is taken at a thousandth of the rate at which a smoothing length evens out: what is left is a
-  // thousandth of the sum's error. Between, the continuity equation alone moves the density.
+  // So the share is a thousandth of the times that a smoothing length evens out within the step.
   double pore_share(const World<Dim>& world, Index i) const {
     const double n = water_->scalar(fields::water_fraction)[i], speed = water_->vector(fields::velocity)[i].norm();
     const double drag = water_->scalar(fields::drag_linear)[i] + water_->scalar(fields::drag_quadratic)[i] * speed;
     const double evening = n * water_->constant("sound_speed") / water_->smoothing_length();
     const double steps = 1e-3 * evening * evening * water_->constant("density") * world.clock.dt_advection;
     return steps < drag ? steps / drag : 1.0;
+  }
+
+  // Where that is little, the errors of a whole layer add up before they drain: there the sum only keeps the density within two
+  // percent, and the continuity equation moves it.
+  static double pore_change(double share, double difference, double rho0) {
+    const double margin = 0.02 * rho0 * (1 - share);
+    return share * std::copysign(std::max(0.0, std::abs(difference) - margin), difference);
   }
 
   // The moment of the particles around says how weak their sums are; where it is cut off at a surface, that of a lattice does.

@@ -34,7 +34,7 @@ Source find_source(const std::string& probe, const SeriesLookup& series) {
 
 void measure_number(const Expect& e, const Samples& samples, ExpectResult& result) {
   if (const std::optional<double> reduced = reduce(samples, e.reduce, e.at))
-    result.value = *reduced / e.scale;
+    result.value = (*reduced + e.shift) / e.scale;
   else
     result.note = fmt::format("the {} samples hold no '{}'", samples.t.size(), e.reduce);
 }
@@ -49,7 +49,7 @@ void measure_curve(const Expect& e, Samples samples, ExpectResult& result) {
     throw TableError(table.path() + ": a curve needs two columns");
   std::vector<double> x = table.numbers(e.x.value_or(table.names().front()));
   std::vector<double> y = table.numbers(e.y ? *e.y : table.names()[1]);
-  for (double& v : samples.y) v /= e.scale;
+  for (double& v : samples.y) v = (v + e.shift) / e.scale;
   for (double& v : x) v = v * e.x_scale + e.x_shift;
   for (double& v : y) v *= e.y_scale;
   for (double& v : x)  // a point outside of the window takes no part, not even in the range
