@@ -152,7 +152,7 @@ boundaries:
 numerics: {pair_precision: double, density_reinitialization: none, transport_velocity: false}
 )");
     rig.plan_it();
-    rig.advance(250);  // until water and soil have come to rest from the first, uneven pushes
+    rig.advance(1500);  // until water and soil have come to rest from the first, uneven pushes
     // All of the soil: what the water lifts of it is rho^w g times the volume of its grains.
     double lift = 0, grains = 0;
     for (Index k = 0; k < rig.soil().size(); ++k) {
