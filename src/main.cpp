@@ -186,6 +186,10 @@ int main(int argc, char** argv) {
       ->add_option("--max-steps", run.limits.max_steps, "stop, resumable, after N advection steps")
       ->check(whole)
       ->type_name("N");
+  run_app
+      ->add_option("--max-acoustic-steps", run.limits.max_acoustic_steps, "the same after N acoustic steps, also within an advection step")
+      ->check(whole)
+      ->type_name("N");
   run_app->add_flag("--verify", run.verify, "exit with 4 when a result under 'expect' is not met");
   run_app->add_flag("-q,--quiet", run.quiet, "no progress and no time table");
   run_app->callback([&] { code = run_guarded([&] { return run_command(run); }); });

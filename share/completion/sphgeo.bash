@@ -12,7 +12,7 @@ _sphgeo() {
     return
   fi
   case $command in
-    run) options="--help -h --set --output -o --threads --overwrite --resume --max-hours --max-steps --verify --quiet -q" ;;
+    run) options="--help -h --set --output -o --threads --overwrite --resume --max-hours --max-steps --max-acoustic-steps --verify --quiet -q" ;;
     check) options="--help -h --set --explain --json --no-calibrate --threads" ;;
     relax) options="--help -h --set --output -o --threads --overwrite --verify --quiet -q" ;;
     bench) options="--help -h --json --scene --size --precision --seconds --repeats" ;;
@@ -30,7 +30,7 @@ _sphgeo() {
     --scene)
       mapfile -t COMPREPLY < <(compgen -W "water_block_h1.3 water_block_h1.8 dam_break" -- "$word")
       return ;;
-    --set | --threads | --max-hours | --max-steps | --size | --seconds | --repeats)
+    --set | --threads | --max-hours | --max-steps | --max-acoustic-steps | --size | --seconds | --repeats)
       return ;;
   esac
 

@@ -46,13 +46,13 @@ Schema<Motion> Motion::schema() {
     if (m.until && !(*m.until > m.from)) c.error("until", "the motion ends before it begins", "until must be later than from");
     if (!m.table) return;
     try {
-      const CsvTable table = read_csv_table(m.table->path);
-      m.times_ = table.numbers("t");
+      const CsvTable rows = read_csv_table(m.table->path);
+      m.times_ = rows.numbers("t");
       if (m.times_.size() < 2 || !std::is_sorted(m.times_.begin(), m.times_.end(), std::less_equal<>()))
         return c.error("table", "the times of the table must rise", "at least two rows, each later than the one before");
       const char* names[] = {"x", "y", "z", "angle"};
       for (std::size_t k = 0; k < 4; ++k)
-        if (table.has(names[k])) m.columns_[k] = table.numbers(names[k]);
+        if (rows.has(names[k])) m.columns_[k] = rows.numbers(names[k]);
     } catch (const std::exception& e) {
       c.error("table", e.what(), "a CSV file with a header row t,x,y,z,angle");
     }

@@ -69,10 +69,23 @@ std::string dam_break(long n) {
       height, 2 * height, 4 * height);
 }
 
+std::string saturated_block(long n) {
+  // Soil and its pore water in one block, n particles in all: 1 of soil and 0.4 of water to a cell.
+  const int cells = std::max(4, static_cast<int>(std::lround(std::cbrt(static_cast<double>(n) / 1.4))));
+  return fmt::format(
+      "dimension: 3\nresolution: 1\ngravity: [0, 0, 0]\nend_time: 1e6\n"
+      "materials:\n  - {{name: water, type: water, sound_speed: 10, viscosity: 0.1}}\n"
+      "  - {{name: soil, type: soil, density: 2000, volume_fraction: 0.6, youngs_modulus: 1.2e5, friction_angle: 30 deg, cohesion: 1 kPa, grain_size: 1e-3}}\n"
+      "bodies:\n  - {{name: water, material: water, shape: {{type: box, min: [0, 0, 0], max: [{0}, {0}, {0}]}}}}\n"
+      "  - {{name: soil, material: soil, shape: {{type: box, min: [0, 0, 0], max: [{0}, {0}, {0}]}},\n"
+      "     velocity: ['0.1*sin(y)', '0.1*sin(z)', '0.1*sin(x)']}}\nrelaxation: {{steps: 20}}\n", cells);
+}
+
 const BenchScene scenes[] = {
     {"water_block_h1.3", [](long n) { return water_block(n, 1.3); }, 1.3, 5.0, 2.8},
     {"water_block_h1.8", [](long n) { return water_block(n, 1.8); }, 1.8, 2.8, 1.4},
     {"soil_block_h1.3", soil_block, 1.3, 3.7, 1.9},
+    {"saturated_block", saturated_block, 1.8, 1.8, 1.0},
     {"dam_break", dam_break, 1.8, std::nullopt, std::nullopt},
 };
 

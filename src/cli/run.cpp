@@ -80,6 +80,7 @@ class DeckRun {
       stepper.load(*resumed);
       wall_before_ = resumed->number("wall_seconds");
       steps_before_ = world.clock.advection_steps;
+      acoustic_before_ = world.clock.acoustic_steps;
       std::cerr << fmt::format("going on from t = {:.6g} s, advection step {} ({})\n", world.clock.time, steps_before_, printable(checkpoint.path));
     }
     write_file_atomically(folder.resolved_deck(), resolved_yaml(model_));
@@ -102,13 +103,23 @@ class DeckRun {
       forecast.leave(recorder.time_rows());
       return true;
     };
+    double asked_at = seconds_since(start_), longest_wait = 0;  // s
+    const auto ask = [&](double wall, std::optional<long> steps) {
+      longest_wait = std::max(longest_wait, wall - std::exchange(asked_at, wall));
+      // What ending takes: one more wait, and the checkpoint (an unknown one is guessed to be slow).
+      const double reserve = longest_wait + (keeper.count() > 0 ? keeper.last_seconds() : 1e-7 * static_cast<double>(world.bytes()) / 100);
+      stopped_ = requests.reason(wall, reserve, steps, world.clock.acoustic_steps - acoustic_before_);
+      return !stopped_.empty();
+    };
+    hooks.before_acoustic_step = [&] {
+      const double wall = seconds_since(start_);
+      if (!ask(wall, {})) return true;
+      keeper.keep(wall);
+      return false;
+    };
     hooks.before_rearranging = [&] {
       const double wall = seconds_since(start_);
-      const double steps = static_cast<double>(world.clock.advection_steps - steps_before_);
-      // What ending takes: one more step, and the checkpoint (an unknown one is guessed to be slow).
-      const double reserve = wall / steps + (keeper.count() > 0 ? keeper.last_seconds() : 1e-7 * static_cast<double>(world.bytes()) / 100);
-      stopped_ = requests.reason(wall, reserve, static_cast<long>(steps));
-      if (!stopped_.empty() || world.clock.time >= model_.end_time) keeper.keep(wall);
+      if (ask(wall, world.clock.advection_steps - steps_before_) || world.clock.time >= model_.end_time) keeper.keep(wall);
       else keeper.keep_if_due(wall);
       return stopped_.empty();
     };
@@ -218,6 +229,7 @@ class DeckRun {
   Summary summary_;
   double wall_before_ = 0;    ///< of the parts of this run that came before, s
   Index steps_before_ = 0;    ///< advection steps of those
+  Index acoustic_before_ = 0; ///< acoustic steps of those
   std::string stopped_;       ///< why the run ends early
 };
 

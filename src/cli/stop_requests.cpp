@@ -40,9 +40,11 @@ StopRequests::StopRequests(std::string stop_file, RunLimits limits) : stop_file_
 
 StopRequests::~StopRequests() { take_signals(SIG_DFL); }
 
-std::string StopRequests::reason(double wall_seconds, double reserve_seconds, long steps) {
+std::string StopRequests::reason(double wall_seconds, double reserve_seconds, std::optional<long> steps, long acoustic_steps) {
   if (signals_seen > 0) return last_signal == SIGINT ? "interrupted (SIGINT)" : "asked to end (SIGTERM)";
-  if (limits_.max_steps && steps >= *limits_.max_steps) return fmt::format("--max-steps {} reached", *limits_.max_steps);
+  if (limits_.max_steps && steps && *steps >= *limits_.max_steps) return fmt::format("--max-steps {} reached", *limits_.max_steps);
+  if (limits_.max_acoustic_steps && acoustic_steps >= *limits_.max_acoustic_steps)
+    return fmt::format("--max-acoustic-steps {} reached", *limits_.max_acoustic_steps);
   // A hundredth is left for what nobody measured.
   if (limits_.max_hours && wall_seconds + reserve_seconds >= 0.99 * 3600 * *limits_.max_hours)
     return fmt::format("--max-hours {} reached", *limits_.max_hours);

@@ -10,9 +10,10 @@ namespace sphgeo {
 struct RunLimits {
   std::optional<double> max_hours;  ///< wall time of this process
   std::optional<long> max_steps;    ///< advection steps of this process
+  std::optional<long> max_acoustic_steps;  ///< the same, acoustic
 };
 
-/// Asks once an advection step. SIGINT and SIGTERM ask a run to finish its step, keep a checkpoint and end;
+/// Asked before every acoustic step. SIGINT and SIGTERM ask a run to finish that, keep a checkpoint and end;
 /// the third signal ends the process at once.
 class StopRequests {
  public:
@@ -24,8 +25,8 @@ class StopRequests {
   StopRequests& operator=(const StopRequests&) = delete;
 
   /// Why to stop now, or "". `wall_seconds` of this process so far, `reserve_seconds` what ending takes,
-  /// `steps` of this process. A stop file is deleted when it is obeyed.
-  std::string reason(double wall_seconds, double reserve_seconds, long steps);
+  /// `steps` and `acoustic_steps` of this process; --max-steps holds between two advection steps. A stop file is deleted when it is obeyed.
+  std::string reason(double wall_seconds, double reserve_seconds, std::optional<long> steps, long acoustic_steps);
 
  private:
   std::string stop_file_;

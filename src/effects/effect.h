@@ -94,6 +94,9 @@ class Effect {
   /// Called once, after all fields and lists exist: take references here.
   virtual void prepare(World<Dim>&) {}
   virtual void apply(World<Dim>&) = 0;
+  /// For a run that goes on in the middle of an advection step: brings back what apply() of the reinitialize stage
+  /// left outside of the fields for the acoustic steps. The clock shows the start of the advection step.
+  virtual void restore(World<Dim>&) {}
   /// Lowers the bounds to what this effect stays stable with.
   virtual void limit(const World<Dim>&, StepLimits&) const {}
   /// Adds what the guard is to watch.

@@ -35,10 +35,13 @@ class WallState final : public Effect<Dim> {
   void apply(World<Dim>& world) override {
     // What rests, under a pull that rests, is packed once.
     if (packed_ && !moves_ && !world.model().body_force) return;
+    restore(world);
     ParticleSet<Dim>& walls = world.set("walls");
     auto& volume = walls.scalar(fields::volume);
     const double each = std::pow(walls.spacing(), Dim);
     parallel_for(walls.size(), [&](Index i) { volume[i] = each; });
+  }
+  void restore(World<Dim>& world) override {
     pack_walls(world);
     packed_ = true;
   }

@@ -102,10 +102,15 @@ class WaterFraction final : public Effect<Dim> {
   void apply(World<Dim>& world) override {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      pack<T>(world);
+      pack_pairs<T>(world);
+      pack_soil<T>(world);
       sum_soil<T>(world);
       if (deformable_) soil_masses<T>(world);
     });
+  }
+
+  void restore(World<Dim>& world) override {
+    world.with_pair_precision([&](auto number) { pack_pairs<decltype(number)>(world); });
   }
 
   void tally(std::vector<Tally>& tallies) const override {
@@ -113,16 +118,35 @@ class WaterFraction final : public Effect<Dim> {
   }
 
  private:
+  // Places and weights that pairs of water and soil keep for the whole advection step.
   template <class T>
-  void pack(World<Dim>& world) {
+  void pack_pairs(World<Dim>& world) {
     auto& soil = pore_records<T>(world, "soil");
     auto& water = pore_records<T>(world, "water");
+    const SoilParts parts(world);
+    const auto& part = soil_->tag(fields::part);
+    const auto& m = soil_->scalar(fields::mass);
+    const auto& grains = water_->scalar(fields::soil_sum);
+    const auto soil_at = world.arranged_places("soil"), water_at = world.arranged_places("water");
+    parallel_for(soil_->size(), [&](Index k) {
+      soil.set_position(k, soil_at[static_cast<std::size_t>(k)]);
+      soil[k][pore_slot::weight] = static_cast<T>(m[k] / parts[part[k]].grain_density);
+    });
+    for_targets(world.list("water", "soil"), [&](Index i) {
+      water.set_position(i, water_at[static_cast<std::size_t>(i)]);
+      water[i][pore_slot::weight] = static_cast<T>(grains[i] > 0 ? 1 / grains[i] : 0);
+    });
+  }
+
+  // What only the sums of this stage need.
+  template <class T>
+  void pack_soil(World<Dim>& world) {
+    auto& soil = pore_records<T>(world, "soil");
     const SoilParts parts(world);
     const double g = world.gravity().norm(), rho0 = water_->constant("density"), eta = water_->constant("viscosity");
     const auto& part = soil_->tag(fields::part);
     const auto& m = soil_->scalar(fields::mass);
     const auto& n = soil_->scalar(fields::volume_fraction);
-    const auto& x = soil_->vector(fields::position);
     std::vector<std::array<double, 3>> drag;  // by body: Eq. 29 times (n^w)^2, and the two terms of Eq. 31
     for (const SoilPart& p : parts.of) {
       drag.push_back({0, 0, 0});
@@ -132,15 +156,10 @@ class WaterFraction final : public Effect<Dim> {
       if (s.drag_law() == "ergun") drag.back() = {0, s.drag_viscous * eta / (*s.grain_size * *s.grain_size), s.drag_inertial * rho0 / *s.grain_size};
     }
     parallel_for(soil_->size(), [&](Index k) {
-      soil.set_position(k, x[k]);
       T* slot = soil[k];
-      const double grains = m[k] / parts[part[k]].grain_density;
-      slot[pore_slot::weight] = static_cast<T>(grains);
       for (int c = 0; c < 3; ++c) slot[pore_slot::vector + c] = static_cast<T>(drag[static_cast<std::size_t>(part[k])][static_cast<std::size_t>(c)]);
-      slot[pore_slot::other] = static_cast<T>(grains / n[k]);
+      slot[pore_slot::other] = static_cast<T>(m[k] / (parts[part[k]].grain_density * n[k]));
     });
-    const auto& at = water_->vector(fields::position);
-    for_targets(world.list("water", "soil"), [&](Index i) { water.set_position(i, at[i]); });
   }
 
   template <class T>

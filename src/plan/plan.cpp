@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -194,6 +195,31 @@ void Plan<Dim>::load(const StateSource& source) {
     e.calls = source.count("effects/" + e.info.name + "/calls");
     e.seconds = source.number("effects/" + e.info.name + "/seconds");
   }
+}
+
+template <int Dim>
+std::vector<std::pair<std::string, FieldBase*>> Plan<Dim>::ready_fields() const {
+  std::map<std::string, FieldBase*> found;  // by the name in the file, each once
+  for (const auto& maker : effects_)
+    for (const FieldUse& made : maker.needs.fields)
+      for (const auto& user : effects_)
+        for (const FieldUse& use : user.needs.fields)
+          if (maker.info.stage == Stage::reinitialize && user.info.stage != Stage::reinitialize && user.info.stage != Stage::observe &&
+              made.access != Access::read && made.field->lifetime == Lifetime::derived && same(made, use))
+            found[made.set + "/" + made.field->name] = &world_.set(made.set).require(*made.field);
+  return {found.begin(), found.end()};
+}
+
+template <int Dim>
+void Plan<Dim>::save_within_step(StateSink& sink) const {
+  for (const auto& [name, field] : ready_fields()) field->save(sink, "within_step/" + name);
+}
+
+template <int Dim>
+void Plan<Dim>::load_within_step(const StateSource& source) {
+  for (const auto& [name, field] : ready_fields()) field->load(source, "within_step/" + name);
+  for (auto& e : effects_)
+    if (e.info.stage == Stage::reinitialize) e.effect->restore(world_);
 }
 
 template <int Dim>

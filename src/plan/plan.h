@@ -55,7 +55,13 @@ class Plan {
   void save(StateSink& sink) const;
   void load(const StateSource& source);
 
+  /// Within an advection step: the derived fields that its acoustic steps find ready from the reinitialize stage.
+  /// Loading also restores what that stage left outside of the fields; the clock must show the start of the step.
+  void save_within_step(StateSink& sink) const;
+  void load_within_step(const StateSource& source);
+
  private:
+  std::vector<std::pair<std::string, FieldBase*>> ready_fields() const;
   void bind(const std::vector<Wish>& wishes);
   void check_producers(const std::vector<Wish>& wishes) const;
   void order();

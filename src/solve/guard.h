@@ -40,7 +40,7 @@ class Guard {
  private:
   void check_speed(const StepLimits& limits);
   void check_fields(bool at_rest_too);
-  void check_bounds();
+  void check_bounds(bool note);
   void check_lost();
   void count_penetrations();
   [[noreturn]] void stop(std::string cause, const ParticleSet<Dim>& set, const FieldSpec& field, Index i,

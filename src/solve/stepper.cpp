@@ -3,16 +3,20 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 namespace sphgeo {
 
 template <int Dim>
 bool Stepper<Dim>::run(double end, const RunHooks& hooks) {
   for (;;) {
-    rearrange();                                         // lines 7, 28
-    if (!hooks.at_safe_point()) return false;
-    if (world_.clock.time >= end) return true;           // line 9
-    advance();
+    if (left_ == 0) {
+      rearrange();                                       // lines 7, 28
+      if (!hooks.at_safe_point()) return false;
+      if (world_.clock.time >= end) return true;         // line 9
+      begin_step();
+    }
+    if (!advance(hooks)) return false;
     guard_.after_advection();
     if (!hooks.before_rearranging()) return false;
   }
@@ -28,23 +32,29 @@ void Stepper<Dim>::rearrange() {
 }
 
 template <int Dim>
-void Stepper<Dim>::advance() {
-  Clock& clock = world_.clock;
+void Stepper<Dim>::begin_step() {
   // Line 10, without the clip to the end of the run: the last step may pass it, so that a run which is
   // continued later takes the same steps as one that was longer from the start.
-  clock.dt_advection = plan_.limits().advection;
-  const double start = clock.time;
-  for (double left = clock.dt_advection; left > 0;) {    // line 14
+  world_.clock.dt_advection = left_ = plan_.limits().advection;
+  start_ = world_.clock.time;
+}
+
+template <int Dim>
+bool Stepper<Dim>::advance(const RunHooks& hooks) {
+  Clock& clock = world_.clock;
+  while (left_ > 0) {                                    // line 14
+    if (!hooks.before_acoustic_step()) return false;
     const StepLimits limits = plan_.limits();
     // Line 15, with what is left divided evenly: no sliver of a step at the end.
-    const double steps = std::max(1.0, std::ceil(left / limits.acoustic - 1e-9));
-    const double dt = left / steps;
+    const double steps = std::max(1.0, std::ceil(left_ / limits.acoustic - 1e-9));
+    const double dt = left_ / steps;
     guard_.before_step(limits, dt);
     acoustic_step(dt);                                   // lines 16 to 25
-    left = steps == 1 ? 0 : left - dt;
-    clock.time = left == 0 ? start + clock.dt_advection : clock.time + dt;  // line 26
+    left_ = steps == 1 ? 0 : left_ - dt;
+    clock.time = left_ == 0 ? start_ + clock.dt_advection : clock.time + dt;  // line 26
   }
   ++clock.advection_steps;
+  return true;
 }
 
 template <int Dim>
@@ -66,6 +76,11 @@ void Stepper<Dim>::save(StateSink& sink) const {
   sink.put_number("stepper/particle_updates", particle_updates_);
   sink.put_count("stepper/rearrangements", rearrangements_);
   guard_.save(sink);
+  sink.put_number("stepper/left", left_);
+  if (left_ == 0) return;
+  sink.put_number("stepper/start", start_);
+  world_.save_arrangement(sink);
+  plan_.save_within_step(sink);
 }
 
 template <int Dim>
@@ -74,6 +89,13 @@ void Stepper<Dim>::load(const StateSource& source) {
   particle_updates_ = source.number("stepper/particle_updates");
   rearrangements_ = source.count("stepper/rearrangements");
   guard_.load(source);
+  left_ = source.number("stepper/left");
+  if (left_ == 0) return;
+  start_ = source.number("stepper/start");
+  world_.load_arrangement(source);
+  const double now = std::exchange(world_.clock.time, start_);
+  plan_.load_within_step(source);
+  world_.clock.time = now;
 }
 
 template class Stepper<2>;

@@ -15,6 +15,8 @@ struct RunHooks {
   /// Between an advection step and the rearrangement that follows it: what the sets hold now is all that
   /// the rest of the run depends on. False: stop before the rearrangement, as a resumed run begins with it.
   std::function<bool()> before_rearranging = [] { return true; };
+  /// Before an acoustic step: the run can be saved here too. False: stop within the advection step.
+  std::function<bool()> before_acoustic_step = [] { return true; };
 };
 
 template <int Dim>
@@ -30,6 +32,8 @@ class Stepper {
   const Guard<Dim>& guard() const { return guard_; }
 
   /// The counters below and the guard's.
+  /// Within an advection step also what is left of it, and what its acoustic steps rest on: loading, after the
+  /// world, rebuilds lists and records, and run() begins with the next acoustic step.
   void save(StateSink& sink) const;
   void load(const StateSource& source);
 
@@ -40,12 +44,14 @@ class Stepper {
 
  private:
   void rearrange();
-  void advance();
+  void begin_step();
+  bool advance(const RunHooks& hooks);
   void acoustic_step(double dt);
 
   World<Dim>& world_;
   Plan<Dim>& plan_;
   Guard<Dim> guard_;
+  double start_ = 0, left_ = 0;  ///< of the advection step: its begin, and what is to come of it, s; 0 between two steps
   double seconds_rearranging_ = 0;
   double particle_updates_ = 0;
   long rearrangements_ = 0;

@@ -36,6 +36,13 @@ struct FixedPoint {
     return static_cast<std::int32_t>(to_local(x, k) * per_quantum + 0.5);
   }
 
+  /// A place that to_fixed maps to these integers.
+  Vec<Dim> place_of(const std::int32_t (&fixed)[Dim]) const {
+    Vec<Dim> at;
+    for (int k = 0; k < Dim; ++k) at[k] = origin[k] + quantum * fixed[k];
+    return at;
+  }
+
   /// Coordinate k relative to the origin [m], clamped to the range.
   double to_local(double x, int k) const {
     const double local = x - origin[k];

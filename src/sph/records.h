@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "core/aligned.h"
 #include "core/types.h"
@@ -51,6 +52,11 @@ class Records {
       else slot[k] = frame_.to_local(r[k], k);
     }
   }
+
+  /// A stored position, as a number of its own kind: an integer in single precision.
+  using Stored = std::conditional_t<sizeof(T) == 4, std::int32_t, double>;
+  Stored stored_position(Index i, int k) const { return std::bit_cast<Stored>((*this)[i][k]); }
+  void set_stored_position(Index i, int k, Stored to) { (*this)[i][k] = std::bit_cast<T>(to); }
 
   /// Memory in use [bytes].
   std::size_t bytes() const { return data_.capacity() * sizeof(T); }

@@ -9,6 +9,15 @@
 #include "core/parallel.h"
 
 namespace sphgeo {
+namespace {
+
+template <int Dim>
+std::span<const Vec<Dim>> places_of(const ParticleSet<Dim>& set) {
+  const auto& x = set.vector(fields::position);
+  return {x.data(), static_cast<std::size_t>(x.size())};
+}
+
+}  // namespace
 
 template <int Dim>
 World<Dim>::World(const Model& model)
@@ -103,30 +112,34 @@ template <int Dim>
 void World<Dim>::rearrange() {
   ++arrangement_;
   for (auto& s : sets_) {
-    CellGrid<Dim>& grid = grids_[s->name()];
-    const bool first = grid.size() != s->size();
-    if (!moves_[s->name()] && !first) continue;
-    if (moves_[s->name()]) remove_lost(*s);
-    const auto& x = s->vector(fields::position);
-    grid.build({x.data(), static_cast<std::size_t>(x.size())}, frame_, reach());
-    s->permute(grid.order());
-    grid.set_sorted();
-    for (auto& [key, record] : records_) {
-      if (key.first != s->name()) continue;
-      if (single_) record.single.resize(s->size(), frame_);
-      else record.full.resize(s->size(), frame_);
-    }
+    const bool moves = moves_[s->name()];
+    if (!moves && grids_[s->name()].size() == s->size()) continue;
+    if (moves) remove_lost(*s);
+    sort(*s, places_of(*s));
     if (records_.contains({s->name(), 0})) pack_positions(*s);
   }
-  for (auto& [key, list] : lists_) {
-    const ParticleSet<Dim>& target = set(key.first);
-    const ParticleSet<Dim>& source = set(key.second);
-    const auto& x = target.vector(fields::position);
-    // Section 3.5: pairs of different sets use the larger smoothing length, so that both see each other.
-    const double radius = 2 * std::max(target.smoothing_length(), source.smoothing_length());
-    list.template build<Dim>({x.data(), static_cast<std::size_t>(x.size())}, grids_.at(key.second), radius,
-                    key.first == key.second ? Pairing::within : Pairing::across);
+  for (auto& [key, list] : lists_) build_list(key, list, places_of(set(key.first)));
+}
+
+// By the cells of the places `at`; makes room in the records.
+template <int Dim>
+void World<Dim>::sort(ParticleSet<Dim>& set, std::span<const Vec<Dim>> at) {
+  CellGrid<Dim>& grid = grids_[set.name()];
+  grid.build(at, frame_, reach());
+  set.permute(grid.order());
+  grid.set_sorted();
+  for (auto& [key, record] : records_) {
+    if (key.first != set.name()) continue;
+    if (single_) record.single.resize(set.size(), frame_);
+    else record.full.resize(set.size(), frame_);
   }
+}
+
+template <int Dim>
+void World<Dim>::build_list(const std::pair<std::string, std::string>& key, NeighborList& list, std::span<const Vec<Dim>> at) {
+  // Section 3.5: pairs of different sets use the larger smoothing length, so that both see each other.
+  const double radius = 2 * std::max(set(key.first).smoothing_length(), set(key.second).smoothing_length());
+  list.template build<Dim>(at, grids_.at(key.second), radius, key.first == key.second ? Pairing::within : Pairing::across);
 }
 
 template <int Dim>
@@ -175,6 +188,79 @@ void World<Dim>::load(const StateSource& source) {
   for (auto& [name, n] : lost_) n = source.count("lost/" + name);
   for (auto& s : sets_) s->load(source);
   grids_.clear();  // also those of sets at rest are to be built anew
+}
+
+// The integers that the grid was built from.
+template <int Dim>
+std::vector<Vec<Dim>> World<Dim>::arranged_places(const std::string& set) const {
+  const CellGrid<Dim>& grid = grids_.at(set);
+  std::vector<Vec<Dim>> at(static_cast<std::size_t>(grid.size()));
+  parallel_for(grid.size(), [&](Index i) {
+    std::int32_t fixed[Dim];
+    for (int d = 0; d < Dim; ++d) fixed[d] = grid.place_coordinate(d)[i];
+    at[static_cast<std::size_t>(i)] = frame_.place_of(fixed);
+  });
+  return at;
+}
+
+template <int Dim>
+void World<Dim>::save_arrangement(StateSink& sink) const {
+  for (const auto& s : sets_) {
+    if (!moves_.at(s->name())) continue;
+    const auto n = static_cast<std::size_t>(s->size());
+    const CellGrid<Dim>& grid = grids_.at(s->name());
+    const auto records = records_.find({s->name(), 0});
+    for (int d = 0; d < Dim; ++d) {
+      const std::string at = fmt::format("arrangement/{}/{}/", s->name(), d);
+      sink.put(at + "listed", std::span<const std::int32_t>(grid.place_coordinate(d), n));
+      if (records == records_.end()) continue;
+      const auto put = [&](const auto& r) {
+        std::vector<typename std::decay_t<decltype(r)>::Stored> stored(n);
+        for (std::size_t i = 0; i < n; ++i) stored[i] = r.stored_position(static_cast<Index>(i), d);
+        sink.put(at + "packed", stored);
+      };
+      if (single_) put(records->second.single);
+      else put(records->second.full);
+    }
+  }
+}
+
+template <int Dim>
+void World<Dim>::load_arrangement(const StateSource& source) {
+  ++arrangement_;
+  for (auto& s : sets_) {
+    const auto n = static_cast<std::size_t>(s->size());
+    const bool packed = records_.contains({s->name(), 0});
+    if (!moves_[s->name()]) {
+      sort(*s, places_of(*s));
+      if (packed) pack_positions(*s);
+      continue;
+    }
+    std::vector<Vec<Dim>> places(n);
+    std::vector<std::int32_t> fixed[Dim];
+    for (int d = 0; d < Dim; ++d) {
+      fixed[d].resize(n);
+      source.get(fmt::format("arrangement/{}/{}/listed", s->name(), d), std::span<std::int32_t>(fixed[d]));
+    }
+    parallel_for(s->size(), [&](Index i) {
+      std::int32_t at[Dim];
+      for (int d = 0; d < Dim; ++d) at[d] = fixed[d][static_cast<std::size_t>(i)];
+      places[static_cast<std::size_t>(i)] = frame_.place_of(at);
+    });
+    sort(*s, places);  // they are sorted: nobody changes place
+    if (!packed) continue;
+    const auto get = [&](auto& r) {
+      std::vector<typename std::decay_t<decltype(r)>::Stored> stored(n);
+      for (int d = 0; d < Dim; ++d) {
+        source.get(fmt::format("arrangement/{}/{}/packed", s->name(), d), std::span(stored));
+        for (std::size_t i = 0; i < n; ++i) r.set_stored_position(static_cast<Index>(i), d, stored[i]);
+      }
+    };
+    RecordPair<Dim>& records = records_.at({s->name(), 0});
+    if (single_) get(records.single);
+    else get(records.full);
+  }
+  for (auto& [key, list] : lists_) build_list(key, list, arranged_places(key.first));
 }
 
 template class World<2>;

@@ -104,8 +104,18 @@ class World {
   void save(StateSink& sink) const;
   void load(const StateSource& source);
 
+  /// The same within an advection step, after save() and load(): the places at the last rearrangement, which lists and
+  /// frozen pair geometry rest on. Loading rebuilds grids, lists and places in the records from them.
+  void save_arrangement(StateSink& sink) const;
+  void load_arrangement(const StateSource& source);
+  /// The places of a set at the last rearrangement, as its grid holds them: the same after save_arrangement() and
+  /// load_arrangement().
+  std::vector<Vec<Dim>> arranged_places(const std::string& set) const;
+
  private:
   void remove_lost(ParticleSet<Dim>& set);
+  void sort(ParticleSet<Dim>& set, std::span<const Vec<Dim>> at);
+  void build_list(const std::pair<std::string, std::string>& key, NeighborList& list, std::span<const Vec<Dim>> at);
   double reach() const;
 
   const Model& model_;

@@ -4,7 +4,7 @@
     test_resume_decks.py SPHGEO SAME_STATE [--whole] [--seed N] [DECK...]
 
 Each deck below decks/ (or the ones named) runs to its end with one thread, with two threads, and once more ended
-at three random places by --max-steps and resumed, with the number of threads changed each time. Frames, tables,
+at three random places (by --max-acoustic-steps, so mostly within an advection step) and resumed, with the number of threads changed each time. Frames, tables,
 summary and the arrays of the last checkpoint must be the same.
 
 So that it takes seconds, the end is where the deck is after SHORT steps, and frames and rows are close enough for
@@ -77,21 +77,22 @@ class Case:
         total = whole["steps"]["advection"]
         frames = len(list((self.folder / "whole" / "frames").glob("*.vtu")))
         # A scene of material points only has no particles and no frames.
-        if total < PIECES or (frames < 2 and any(whole["particles"].values())):
+        if total < PIECES or whole["steps"]["acoustic"] < PIECES or (frames < 2 and any(whole["particles"].values())):
             raise Wrong(f"{total} steps and {frames} frames are too few to compare anything")
         self.run("threads", "--threads", 2)
         self.compare("threads", "1 and 2 threads")
-        places = sorted(rng.sample(range(1, total), PIECES - 1))
+        # Within advection steps and between two of them.
+        places = sorted(rng.sample(range(1, whole["steps"]["acoustic"]), PIECES - 1))
         at = 0
         for k, place in enumerate(places):
-            steps = self.run("pieces", "--threads", 2 - k % 2, "--max-steps", place - at, *(["--resume"] if k else []),
-                             expected=STOPPED)["steps"]["advection"]
+            steps = self.run("pieces", "--threads", 2 - k % 2, "--max-acoustic-steps", place - at, *(["--resume"] if k else []),
+                             expected=STOPPED)["steps"]["acoustic"]
             if steps != place:
-                raise Wrong(f"asked to stop after {place} steps, it stopped after {steps}")
+                raise Wrong(f"asked to stop after {place} acoustic steps, it stopped after {steps}")
             at = place
         self.run("pieces", "--threads", 1, "--resume")
-        self.compare("pieces", f"stopped after {places} of {total} steps")
-        return f"{total} steps, {sum(whole['particles'].values())} particles, {frames} frame files, stopped after {places}"
+        self.compare("pieces", f"stopped after {places} of {whole['steps']['acoustic']} acoustic steps")
+        return f"{total} steps, {whole['steps']['acoustic']} acoustic, {sum(whole['particles'].values())} particles, {frames} frame files, stopped after {places}"
 
 
 def main():
