@@ -233,6 +233,11 @@ typename Recorder<Dim>::Totals Recorder<Dim>::totals() const {
   sum.max_speed = std::max(sum.max_speed, std::sqrt(block_max(n, [&](Index i) { return v[i].squaredNorm(); }, 0.0)));
   sum.min_density = block_min(n, [&](Index i) { return rho[i]; });
   sum.max_density = block_max(n, [&](Index i) { return rho[i]; });
+  if (!water->has(fields::water_fraction)) return sum;
+  const auto& fraction = water->scalar(fields::water_fraction);
+  const bool follows = world_.model().numerics.pore_water != "constant_volume";
+  sum.water_volume = ordered_sum(n, [&](Index i) { return m[i] / rho[i]; });
+  sum.mixture_volume = ordered_sum(n, [&](Index i) { return m[i] / (rho[i] * (follows ? fraction[i] : 1.0)); });
   return sum;
 }
 
@@ -374,6 +379,11 @@ std::vector<LedgerRow> Recorder<Dim>::ledger() const {
   std::vector<LedgerRow> rows{{"mass", "kg", {a.mass}, {b.mass}, {}, relative(b.mass - a.mass, a.mass)},
           {"momentum", "kg m/s", list(a.momentum), list(b.momentum), {}, relative((vec(b.momentum) - vec(a.momentum)).norm(), a.mass * speed)},
           {"energy", "J", {energy_a}, {energy_b}, {}, relative(energy_b - energy_a, energy_scale)}};
+  if (a.water_volume > 0) {
+    const std::string cubic = Dim == 2 ? "m2" : "m3";
+    rows.push_back({"water_volume", cubic, {a.water_volume}, {b.water_volume}, {}, relative(b.water_volume - a.water_volume, a.water_volume)});
+    rows.push_back({"mixture_volume", cubic, {a.mixture_volume}, {b.mixture_volume}, {}, relative(b.mixture_volume - a.mixture_volume, a.mixture_volume)});
+  }
   std::vector<Tally> tallies;
   for (const auto& e : plan_.effects()) e.effect->tally(tallies);
   for (const Tally& t : tallies) rows.push_back({t.name, t.unit, {}, {t.value}, {}, 0.0});

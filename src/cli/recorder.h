@@ -72,6 +72,7 @@ class Recorder {
     std::array<double, 3> momentum{};
     double max_speed = 0, min_density = 0, max_density = 0;
     double dissipated = 0, min_fraction = 0, max_fraction = 0;  ///< of soil
+    double water_volume = 0, mixture_volume = 0;                ///< sum of m / rho and of V, where water meets soil
   };
   using TotalsArray = std::array<double, sizeof(Totals) / sizeof(double)>;
 

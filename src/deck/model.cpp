@@ -101,8 +101,8 @@ Schema<Numerics> Numerics::schema() {
       .choices({"summation", "shepard", "none"});
   s.optional("pore_water", &Numerics::pore_water, unit::none,
              "water in soil: equal_mass: particles of one mass, whose volume follows the porosity; variable_mass: as well, but at t = 0 "
-             "particles of one volume, whose mass follows the porosity (Zhu et al.); constant_volume: the volume ignores the porosity "
-             "(Bui et al.)")
+             "particles of one volume, whose mass follows the porosity (Zhu et al.); constant_volume: volume and mass ignore the "
+             "porosity (Bui et al.)")
       .choices({"equal_mass", "variable_mass", "constant_volume"})
       .equation("Eq. 27");
   s.optional("water_fraction_floor", &Numerics::water_fraction_floor, unit::none,

@@ -52,6 +52,7 @@ class PorePressure final : public Effect<Dim> {
     });
     const SoilParts parts(world);
     const auto& part = soil_->tag(fields::part);
+    const auto& mass = soil_->scalar(fields::mass);
     auto& a = soil_->vector(fields::acceleration_sum);
     auto& by_water = soil_->vector(fields::water_acceleration);
     parallel_for(soil_->size(), [&](Index k) { by_water[k].setZero(); });
@@ -59,6 +60,17 @@ class PorePressure final : public Effect<Dim> {
       by_water[k] = sum / parts[part[k]].grain_density;  // omega / m
       a[k] += by_water[k];
     });
+    if (arrangement_ == world.arrangement()) return;
+    // Once per advection step: what the water gave less what the soil got.
+    arrangement_ = world.arrangement();
+    const auto given = [&](Index i) -> Vec<Dim> { return n[i] < 1 ? Vec<Dim>(((1 - n[i]) * m[i] / (n[i] * rho[i])) * force[i]) : Vec<Dim>(Vec<Dim>::Zero()); };
+    const Vec<Dim> left = ordered_sum(water_->size(), given) - ordered_sum(soil_->size(), [&](Index k) -> Vec<Dim> { return mass[k] * by_water[k]; });
+    const double size = ordered_sum(water_->size(), [&](Index i) { return given(i).norm(); });
+    left_over_ = size > 0 ? left.norm() / size : 0;
+  }
+
+  void tally(std::vector<Tally>& tallies) const override {
+    tallies.push_back({"pore_pressure_left_over", "1", "what the pressure forces on water and soil leave of their sum, over their size, at the last rearrangement", left_over_});
   }
 
   // Water and soil bound to each other carry a faster wave than either alone. The trace of the two coupled wave
@@ -79,6 +91,8 @@ class PorePressure final : public Effect<Dim> {
   }
 
  private:
+  long arrangement_ = -1;
+  double left_over_ = 0;
   ParticleSet<Dim>* water_ = nullptr;
   ParticleSet<Dim>* soil_ = nullptr;
 };

@@ -84,6 +84,7 @@ Node described(const std::shared_ptr<const Shape>& shape) {
 }  // namespace
 
 std::optional<PoreBodies> pore_bodies(const Model& model) {
+  if (model.numerics.pore_water != "equal_mass") return std::nullopt;
   const WaterTarget target(model);
   if (target.soils().empty()) return std::nullopt;
   std::vector<std::size_t> water, chosen;

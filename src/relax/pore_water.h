@@ -18,7 +18,7 @@ struct PoreBodies {
   std::shared_ptr<const Shape> water;  ///< all of them
 };
 
-/// Nothing when no water overlaps soil.
+/// Nothing when no water overlaps soil, or when numerics.pore_water asks for particles that stand on a lattice in pores, too.
 std::optional<PoreBodies> pore_bodies(const Model& model);
 
 /// The particles of these bodies.

@@ -85,6 +85,9 @@ void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
   for (const FieldSpec* f : {&fields::mass, &fields::density, &fields::density_rate}) set.require(*f);
   if (fill == Filling::none) return;
   scene.pore_water = pore_water(model, found, fill == Filling::draft ? Relaxing::draft : Relaxing::as_deck);
+  // Water of variable mass (Zhu et al.) stands on its lattice, and its mass follows the porosity.
+  std::optional<WaterTarget> share;
+  if (model.numerics.pore_water == "variable_mass" && has_soil(model)) share.emplace(model);
   if (found.has_errors()) return;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
@@ -115,7 +118,7 @@ void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
       set.tag(fields::part)[i] = static_cast<std::int32_t>(b);
       x[i] = to_scene<Dim>(at);
       v[i] = to_scene<Dim>(Vec3(body.velocity[0](at, 0), body.velocity[1](at, 0), body.velocity[2](at, 0)));
-      set.scalar(fields::mass)[i] = mass;
+      set.scalar(fields::mass)[i] = share ? mass * std::clamp(share->mean_fraction(at, model.resolution), WaterTarget::smallest, 1.0) : mass;
       set.scalar(fields::density)[i] = water->density + initial_pressure(body, model, water->density, at) / c2;
     });
     for (Index i = first; i < set.size(); ++i)
