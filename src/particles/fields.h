@@ -27,6 +27,7 @@ inline constexpr FieldSpec normal{"normal", vector, state, unit::none, "outward 
 inline constexpr FieldSpec reference_position{"reference_position", vector, reference, unit::length, "place at t = 0"};
 inline constexpr FieldSpec reference_normal{"reference_normal", vector, reference, unit::none, "normal at t = 0"};
 inline constexpr FieldSpec no_slip{"no_slip", scalar, reference, unit::none, "1 where water sticks to the wall, 0 where it slides"};
+inline constexpr FieldSpec corner{"corner", scalar, reference, unit::none, "1 behind two walls at once, in the concave corner between them"};
 inline constexpr FieldSpec wall_force{"wall_force", vector, derived, unit::force, "force of water and soil on a wall particle"};
 
 // Soil.
@@ -37,6 +38,7 @@ inline constexpr FieldSpec initial_volume_fraction{"initial_volume_fraction", sc
 inline constexpr FieldSpec stress{"stress", tensor, state, unit::pressure,
                                   "effective stress, tension positive: xx, yy, zz, xy, yz, xz"};
 inline constexpr FieldSpec crowding{"crowding", scalar, derived, unit::none, "sum over neighbors at their volume at rest, over that of a lattice"};
+inline constexpr FieldSpec separation{"separation", scalar, state, unit::none, "volume strain by which grains that came apart have to close before they bear pressure"};
 inline constexpr FieldSpec gradient_correction{"gradient_correction", tensor, state, unit::none, "inverse moment of the kernel gradient: xx, yy, zz, xy, yz, xz"};
 inline constexpr FieldSpec plastic_strain{"plastic_strain", scalar, state, unit::none, "accumulated equivalent plastic strain"};
 inline constexpr FieldSpec plastic_work{"plastic_work", scalar, state, unit::energy,
@@ -47,8 +49,8 @@ inline constexpr FieldSpec saturation{"saturation", scalar, state, unit::none, "
 inline constexpr const FieldSpec* all[] = {&id, &part, &position, &velocity, &acceleration,
                                            &acceleration_sum, &mass,
                                            &density, &density_rate, &pressure, &volume, &surface,
-                                           &normal, &reference_position, &reference_normal, &no_slip, &wall_force,
-                                           &volume_fraction, &volume_fraction_rate, &initial_volume_fraction, &stress, &crowding, &gradient_correction,
+                                           &normal, &reference_position, &reference_normal, &no_slip, &corner, &wall_force,
+                                           &volume_fraction, &volume_fraction_rate, &initial_volume_fraction, &stress, &crowding, &separation, &gradient_correction,
                                            &plastic_strain, &plastic_work, &saturation};
 
 }  // namespace sphgeo::fields

@@ -117,7 +117,7 @@ void add_soil(Scene<Dim>& scene, const Model& model, Filling filling, Diagnostic
   if (!has_soil(model)) return;
   ParticleSet<Dim>& set = scene.world->add_set("soil", "soil", model.resolution, soil_smoothing_length(model), true);
   for (const FieldSpec* f : {&fields::mass, &fields::volume_fraction, &fields::volume_fraction_rate, &fields::initial_volume_fraction,
-                             &fields::stress, &fields::gradient_correction, &fields::plastic_strain, &fields::plastic_work})
+                             &fields::stress, &fields::separation, &fields::gradient_correction, &fields::plastic_strain, &fields::plastic_work})
     set.require(*f);
   for (const Body& b : model.bodies)
     if (const Soil* s = soil_of(model, b); s && s->saturated_cohesion) set.require(fields::saturation);
