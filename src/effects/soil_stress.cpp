@@ -78,6 +78,7 @@ class SoilStress final : public Effect<Dim> {
     Needs n{{{"soil", &fields::volume, Access::read}, {"soil", &fields::volume_fraction, Access::read},
              {"soil", &fields::velocity, Access::read},
              {"soil", &fields::stress, Access::update},
+             {"soil", &fields::separation, Access::update},
              {"soil", &fields::gradient_correction, Access::write},
              {"soil", &fields::plastic_strain, Access::update},
              {"soil", &fields::plastic_work, Access::update},
@@ -139,6 +140,7 @@ class SoilStress final : public Effect<Dim> {
     const double per_time = parts.fastest / (20 * soil_->smoothing_length());
     const bool corrected = world.model().numerics.soil_velocity_gradient == "corrected";
     auto& stress = soil_->tensor(fields::stress);
+    auto& separation = soil_->scalar(fields::separation);
     auto& correction = soil_->tensor(fields::gradient_correction);
     auto& strain = soil_->scalar(fields::plastic_strain);
     auto& work = soil_->scalar(fields::plastic_work);
@@ -150,7 +152,7 @@ class SoilStress final : public Effect<Dim> {
       const int lanes = static_cast<int>(std::min<Index>(L::width, count - k));
       // Idle lanes of the last group repeat its last particle.
       const auto of = [&](int lane) { return k + std::min(lane, lanes - 1); };
-      L sum[Dim][Dim], moment[Dim * (Dim + 1) / 2], s[6];
+      L sum[Dim][Dim], moment[Dim * (Dim + 1) / 2], s[6], apart;
       DruckerPrager<L> m;
       for (int lane = 0; lane < L::width; ++lane) {
         const Sums& from = sums[of(lane)];
@@ -159,6 +161,7 @@ class SoilStress final : public Effect<Dim> {
           for (int c = 0; c < Dim; ++c) sum[a][c].raw[lane] = from.gradient[a][c];
         for (int c = 0; c < Dim * (Dim + 1) / 2; ++c) moment[c].raw[lane] = from.moment[c];
         for (int c = 0; c < 6; ++c) s[c].raw[lane] = stress[i][c];
+        apart.raw[lane] = separation[i];
         DruckerPrager<double> soil = parts[part[i]].constants;
         if (wetted_)  // Eq. 108: the strength falls with the cohesion
           soil = with_strength(soil, soil.strength + soil_->scalar(fields::saturation)[i] * (parts[part[i]].wet_strength - soil.strength));
@@ -177,14 +180,19 @@ class SoilStress final : public Effect<Dim> {
       symmetric_part(gradient, rates);
       if (crowding) {
         L excess;
-        for (int lane = 0; lane < L::width; ++lane) excess.raw[lane] = (*crowding)[first + of(lane)] - (1 + crowding_margin);
+        for (int lane = 0; lane < L::width; ++lane) excess.raw[lane] = (*crowding)[first + of(lane)] - 1;
+        // Where the neighbors are as close as at t = 0, nothing is left to close, whatever the rates have summed up. A low sum
+        // says nothing, since it may be that of a surface.
+        apart = min(apart, max(L(0.0), -excess));
+        excess -= L(crowding_margin);
         excess = max(L(0.0), excess + (s[0] + s[1] + s[2]) / (L(3.0) * m.bulk));
         for (int a = 0; a < 3; ++a) gradient[a][a] -= L(per_time / 3) * excess;
       }
-      const PlasticStep<L> plastic = update_stress(s, gradient, L(dt), m);
+      const PlasticStep<L> plastic = update_stress(s, apart, gradient, L(dt), m);
       for (int lane = 0; lane < lanes; ++lane) {
         const Index i = first + k + lane;
         for (int c = 0; c < 6; ++c) stress[i][c] = s[c][lane];
+        separation[i] = apart[lane];
         for (int a = 0; a < Dim; ++a)
           for (int c = a; c < Dim; ++c) correction[i][tensor_index<Dim>[a][c]] = inverse.entry[a][c][lane];
         strain[i] += plastic.strain[lane];

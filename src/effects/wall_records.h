@@ -30,7 +30,7 @@ void pack_walls(World<Dim>& world) {
       T* two = second[i] - record_size;  // slots of the second record count on from the first
       one[wall_slot::volume] = static_cast<T>(volume);
       one[wall_slot::no_slip] = static_cast<T>(no_slip[i]);
-      if (corner) two[wall_slot::face] = static_cast<T>(1 - (*corner)[i]);
+      if (corner) two[wall_slot::face] = static_cast<T>(1 - (*corner)[i] * (1 - no_slip[i]));
       const Vec<Dim> g = world.pull(x[i]);
       two[wall_slot::push] = static_cast<T>(std::max(0.0, (a ? Vec<Dim>((*a)[i] - g) : Vec<Dim>(-g)).dot(n[i])));
       two[wall_slot::weight] = static_cast<T>(-g.dot(n[i]));

@@ -111,8 +111,13 @@ void symmetric_part(const T (&gradient)[3][3], T (&rate)[6]) {
 /// fast shear layer it is a hundred times larger: what the flow takes off then lies across the strain, the stress of the next
 /// step across that of this one, and the layer bears 0.40 of its normal stress instead of 0.48. Here both are taken at
 /// the end of the step, which Eqs. 12 to 15 allow in closed form; for small steps it is the same to first order.
+///
+/// `separation` is the volume strain by which grains have come apart: what the soil expands beyond its apex (Eq. 19). The
+/// print forgets it, so that sand which came apart bears pressure again from the first compression on, wherever its grains
+/// are then. Here it has to close first: pressure and separation are never both above zero. The dilation of plastic
+/// flow (psi > 0) is no separation, so that soil which has dilated in shear bears its stress at the volume that it has.
 template <class T>
-PlasticStep<T> update_stress(T (&stress)[6], const T (&gradient)[3][3], const T& dt, const DruckerPrager<T>& m) {
+PlasticStep<T> update_stress(T (&stress)[6], T& separation, const T (&gradient)[3][3], const T& dt, const DruckerPrager<T>& m) {
   using Invariants = StressInvariants<T>;
   rotate_stress(stress, gradient, dt);
   T strain[6];
@@ -121,14 +126,21 @@ PlasticStep<T> update_stress(T (&stress)[6], const T (&gradient)[3][3], const T&
   T trial[6];
   for (int k = 0; k < 6; ++k)
     trial[k] = stress[k] + T(2) * m.shear * dt * (k < 3 ? strain[k] - trace * T(1.0 / 3.0) : strain[k]) + (k < 3 ? m.bulk * trace * dt : T(0));
-  const Invariants elastic(trial);
+  Invariants elastic(trial);
+  const T closed = min(separation, max(T(0), -elastic.first) / (T(3) * m.bulk));
+  separation -= closed;
+  elastic.first += T(3) * m.bulk * closed;
   const T length = sqrt(elastic.second);
-  const T flow = max(T(0), length + m.friction * elastic.first - m.strength) / (m.shear + T(9) * m.bulk * m.friction * m.dilation);
-  const T first = elastic.first - T(9) * m.bulk * m.dilation * flow;
+  // No more than what takes the whole deviator off: beyond the apex the rest of the expansion is no plastic flow.
+  const T flow = min(length / m.shear, max(T(0), length + m.friction * elastic.first - m.strength) / (m.shear + T(9) * m.bulk * m.friction * m.dilation));
+  // Grains that are apart do not dilate against each other.
+  const T dilated = elastic.first - T(9) * m.bulk * m.dilation * flow;
+  const T first = select(separation > T(0), max(T(0), dilated), dilated);
 
   // Eq. 19, then Eq. 20 also after it: Algorithm 1 leaves the deviator of a stress moved to the apex as
   // it is, which is outside of the yield surface.
   const T bounded = min(m.apex, first);
+  separation += (first - bounded) / (T(3) * m.bulk);
   const T radius = max(T(0), m.strength - m.friction * bounded);
   const T scale = select(length > radius, radius / max(T(1e-140), length), T(1));
 

@@ -60,12 +60,12 @@ struct StressPathProbe final : Probe {
     const auto* soil = dynamic_cast<const Soil*>(scene.model().material(material));
     if (!soil) return;
     const DruckerPrager<double> m = soil->constants();
-    double s[6] = {-pressure, -pressure, -pressure, 0, 0, 0}, strain = 0, work = 0, outside = 0;
+    double s[6] = {-pressure, -pressure, -pressure, 0, 0, 0}, strain = 0, work = 0, outside = 0, separation = 0;
     const auto steps = static_cast<Index>(std::floor(scene.time() / step + 1e-9));
     for (Index k = 0; k < steps; ++k) {
       double g[3][3] = {};
-      lead((static_cast<double>(k) + 0.5) * step, m, s, g);
-      const PlasticStep<double> plastic = update_stress(s, g, step, m);
+      lead((static_cast<double>(k) + 0.5) * step, m, s, separation, g);
+      const PlasticStep<double> plastic = update_stress(s, separation, g, step, m);
       strain += plastic.strain;
       work += plastic.work;
       const StressInvariants<double> now(s);
@@ -83,23 +83,23 @@ struct StressPathProbe final : Probe {
 
  private:
   // The velocity gradient of the step around time t.
-  void lead(double t, const DruckerPrager<double>& m, const double (&s)[6], double (&g)[3][3]) const {
+  void lead(double t, const DruckerPrager<double>& m, const double (&s)[6], double separation, double (&g)[3][3]) const {
     if (path == "simple_shear") g[0][2] = rate;
     if (path == "oedometric" || path == "triaxial") g[2][2] = -rate;
-    if (path == "triaxial") g[0][0] = g[1][1] = lateral_rate(m, s);
+    if (path == "triaxial") g[0][0] = g[1][1] = lateral_rate(m, s, separation);
     if (path == "gradient")
       for (std::size_t k = 0; k < 9; ++k) g[k / 3][k % 3] = (*gradient)[k](Vec3::Zero(), t);
   }
   // The rate at which the sides give way so that their stress stays, by bisection: the stress after the
   // step grows with it. Between no volume change of a dilating soil and no lateral strain at all.
-  double lateral_rate(const DruckerPrager<double>& m, const double (&s)[6]) const {
+  double lateral_rate(const DruckerPrager<double>& m, const double (&s)[6], double separation) const {
     double lo = -std::abs(rate), hi = 10 * std::abs(rate);
     for (int n = 0; n < 80; ++n) {
       const double middle = 0.5 * (lo + hi);
-      double trial[6];
+      double trial[6], apart = separation;
       std::copy(std::begin(s), std::end(s), trial);
       const double g[3][3] = {{middle, 0, 0}, {0, middle, 0}, {0, 0, -rate}};
-      update_stress(trial, g, step, m);
+      update_stress(trial, apart, g, step, m);
       (trial[0] > -pressure ? hi : lo) = middle;
     }
     return 0.5 * (lo + hi);

@@ -25,7 +25,7 @@ Constants soil(double phi, double c, double psi, double young = 1e7, double nu =
 
 struct Point {
   double stress[6] = {};
-  double strain = 0, work = 0, least_work = 0, work_size = 0, outside = 0;
+  double separation = 0, strain = 0, work = 0, least_work = 0, work_size = 0, outside = 0;
 
   static Point isotropic(double p) {
     Point a;
@@ -35,7 +35,7 @@ struct Point {
   double root() const { return std::sqrt(Invariants(stress).second); }
   double first() const { return Invariants(stress).first; }
   void step(const double (&gradient)[3][3], double dt, const Constants& m) {
-    const auto plastic = update_stress(stress, gradient, dt, m);
+    const auto plastic = update_stress(stress, separation, gradient, dt, m);
     strain += plastic.strain;
     work += plastic.work;
     least_work = std::min(least_work, plastic.work);
@@ -207,6 +207,34 @@ TEST_CASE("tension: a soil without cohesion carries none, one with cohesion up t
   }
 }
 
+TEST_CASE("grains that came apart bear pressure again when they have come as close as they were") {
+  const double isotropic[3][3] = {{1.0 / 3, 0, 0}, {0, 1.0 / 3, 0}, {0, 0, 1.0 / 3}};
+  const double back[3][3] = {{-1.0 / 3, 0, 0}, {0, -1.0 / 3, 0}, {0, 0, -1.0 / 3}};
+  for (const double c : {0.0, 3e3})
+    for (const double psi : {0.0, 25 * degree}) {
+      CAPTURE(c);
+      CAPTURE(psi);
+      const Constants m = soil(25 * degree, c, psi);
+      Point p = Point::isotropic(1000);
+      p.walk(isotropic, 0.02, 100, m);  // far beyond the apex
+      CHECK(p.separation == doctest::Approx(0.02 - (3000 + p.first()) / (3 * m.bulk)).epsilon(1e-10));
+      shear(p, 0.01, 20, m);  // apart, they bear no pressure in shear either
+      CHECK(p.first() >= 0);
+      p.walk(back, 0.019, 100, m);
+      CHECK(p.first() == doctest::Approx(0).scale(1));
+      p.walk(back, 0.002, 100, m);
+      CHECK(p.separation == 0);
+      if (psi == 0) CHECK(p.first() == doctest::Approx(-3000 - 3 * m.bulk * 0.001).epsilon(1e-8));
+      CHECK(p.least_work >= -1e-9 * p.work_size);
+    }
+  // Soil that has dilated in shear bears its pressure at the larger volume.
+  const Constants dense = soil(30 * degree, 0, 10 * degree);
+  Point q = Point::isotropic(1e5);
+  shear(q, 0.05, 1000, dense);
+  CHECK(q.separation == 0);
+  CHECK(-q.first() > 3e5);
+}
+
 TEST_CASE("a rigid rotation keeps the invariants to rounding and turns the stress") {
   const Constants m = soil(30 * degree, 1e6, 0);
   const double turns = 10, omega = 2 * std::numbers::pi;
@@ -233,7 +261,7 @@ TEST_CASE("lanes give what single numbers give") {
   using L = Lanes<double>;
   const Constants m = soil(30 * degree, 2e3, 10 * degree);
   const DruckerPrager<L> wide{L(m.bulk), L(m.shear), L(m.friction), L(m.dilation), L(m.strength), L(m.apex)};
-  L stress[6], gradient[3][3];
+  L stress[6], gradient[3][3], separation(0.0);
   Point points[L::width];
   double slopes[L::width][3][3];
   int seed = 900;
@@ -242,10 +270,11 @@ TEST_CASE("lanes give what single numbers give") {
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b) gradient[a][b].raw[lane] = slopes[lane][a][b] = lane == 0 ? 0 : random(++seed);
   }
-  const PlasticStep<L> plastic = update_stress(stress, gradient, L(1e-3), wide);
+  const PlasticStep<L> plastic = update_stress(stress, separation, gradient, L(1e-3), wide);
   for (int lane = 0; lane < L::width; ++lane) {
     points[lane].step(slopes[lane], 1e-3, m);
     for (int k = 0; k < 6; ++k) CHECK(stress[k][lane] == doctest::Approx(points[lane].stress[k]).epsilon(1e-13));
+    CHECK(separation[lane] == doctest::Approx(points[lane].separation).epsilon(1e-12));
     CHECK(plastic.work[lane] == doctest::Approx(points[lane].work).epsilon(1e-12));
     CHECK(plastic.strain[lane] == doctest::Approx(points[lane].strain).epsilon(1e-12));
   }
