@@ -60,9 +60,7 @@ class PorePressure final : public Effect<Dim> {
       by_water[k] = sum / parts[part[k]].grain_density;  // omega / m
       a[k] += by_water[k];
     });
-    if (arrangement_ == world.arrangement()) return;
-    // Once per advection step: what the water gave less what the soil got.
-    arrangement_ = world.arrangement();
+    // What the water gave less what the soil got.
     const auto given = [&](Index i) -> Vec<Dim> { return n[i] < 1 ? Vec<Dim>(((1 - n[i]) * m[i] / (n[i] * rho[i])) * force[i]) : Vec<Dim>(Vec<Dim>::Zero()); };
     const Vec<Dim> left = ordered_sum(water_->size(), given) - ordered_sum(soil_->size(), [&](Index k) -> Vec<Dim> { return mass[k] * by_water[k]; });
     const double size = ordered_sum(water_->size(), [&](Index i) { return given(i).norm(); });
@@ -70,7 +68,7 @@ class PorePressure final : public Effect<Dim> {
   }
 
   void tally(std::vector<Tally>& tallies) const override {
-    tallies.push_back({"pore_pressure_left_over", "1", "what the pressure forces on water and soil leave of their sum, over their size, at the last rearrangement", left_over_});
+    tallies.push_back({"pore_pressure_left_over", "1", "what the pressure forces on water and soil leave of their sum, over their size, in the last step", left_over_});
   }
 
   // Water and soil bound to each other carry a faster wave than either alone. The trace of the two coupled wave
@@ -91,7 +89,6 @@ class PorePressure final : public Effect<Dim> {
   }
 
  private:
-  long arrangement_ = -1;
   double left_over_ = 0;
   ParticleSet<Dim>* water_ = nullptr;
   ParticleSet<Dim>* soil_ = nullptr;

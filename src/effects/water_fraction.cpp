@@ -95,6 +95,7 @@ class WaterFraction final : public Effect<Dim> {
   void prepare(World<Dim>& world) override {
     water_ = &world.set("water");
     soil_ = &world.set("soil");
+    floor_ = world.model().numerics.water_fraction_floor;
     world.records("water", water_pore_record);
     world.records("soil", soil_pore_record);
   }
@@ -114,10 +115,15 @@ class WaterFraction final : public Effect<Dim> {
   }
 
   void tally(std::vector<Tally>& tallies) const override {
-    tallies.push_back({"water_fraction_floor", "1", "water particles at the floor of the water fraction, at the last rearrangement", at_floor_});
+    tallies.push_back({"water_fraction_floor", "1", "water particles at the floor of the water fraction, at the last rearrangement", at_floor()});
   }
 
  private:
+  double at_floor() const {
+    const auto& n = water_->scalar(fields::water_fraction);
+    return ordered_sum(water_->size(), [&](Index i) { return n[i] <= floor_ ? 1.0 : 0.0; });
+  }
+
   // Places and weights that pairs of water and soil keep for the whole advection step.
   template <class T>
   void pack_pairs(World<Dim>& world) {
@@ -165,7 +171,6 @@ class WaterFraction final : public Effect<Dim> {
   template <class T>
   void sum_soil(World<Dim>& world) {
     const Kernel<Dim> kernel(water_->smoothing_length());
-    const double floor = world.model().numerics.water_fraction_floor;
     const NeighborList& list = world.list("water", "soil");
     const NeighborList* walls = has_walls_ ? &world.list("water", "walls") : nullptr;
     auto& water = pore_records<T>(world, "water");
@@ -179,7 +184,6 @@ class WaterFraction final : public Effect<Dim> {
       grains[i] = linear[i] = quadratic[i] = 0;
     });
     const Index blocks = static_cast<Index>(list.blocks().size());
-    std::vector<Index> floored(static_cast<std::size_t>(blocks), 0);
     parallel_blocks(blocks, 1, [&](Index b, Index, Index) {
       // Water that no soil is near pays nothing for its walls.
       if (list.blocks()[static_cast<std::size_t>(b)].size() == 0) return;
@@ -190,8 +194,7 @@ class WaterFraction final : public Effect<Dim> {
       gather_block<SoilAround<Dim>::template Sums>(list, b, water, soil, SoilAround<Dim>{kernel}, [&](Index i, const auto& s) {
         const double inside = std::max(0.1, 1 - share[static_cast<std::size_t>(i - b * block_size)]);
         const double free = 1 - s.grains / inside;
-        n[i] = std::max(floor, free);
-        floored[static_cast<std::size_t>(b)] += free < floor;
+        n[i] = std::max(floor_, free);
         grains[i] = s.grains;
         water[i][pore_slot::weight] = static_cast<T>(s.grains > 0 ? 1 / s.grains : 0);
         if (!(s.grains > 0)) return;
@@ -201,8 +204,6 @@ class WaterFraction final : public Effect<Dim> {
         quadratic[i] = (1 - n[i]) * s.drag[2] / s.grains;
       });
     });
-    at_floor_ = 0;
-    for (const Index f : floored) at_floor_ += static_cast<double>(f);
   }
 
   // The mass of soil that an impulse on each water particle would move, were all of them given impulses alike: an impulse J_l is
@@ -228,7 +229,7 @@ class WaterFraction final : public Effect<Dim> {
   }
 
   bool has_walls_, deformable_;
-  double at_floor_ = 0;
+  double floor_ = 0;  // least n^w
   ParticleSet<Dim>* water_ = nullptr;
   ParticleSet<Dim>* soil_ = nullptr;
 };
