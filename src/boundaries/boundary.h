@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "boundaries/motion.h"
+#include "deck/motion.h"
 #include "core/types.h"
 #include "deck/interfaces.h"
 #include "deck/schema.h"

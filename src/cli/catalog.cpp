@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "boundaries/motion.h"
+#include "deck/motion.h"
 #include "deck/model.h"
 #include "effects/effect.h"
 #include "particles/fields.h"

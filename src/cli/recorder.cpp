@@ -12,6 +12,7 @@
 #include "geometry/mesh.h"
 #include "output/vtu.h"
 #include "probes/set_sums.h"
+#include "probes/solid_scene.h"
 #include "scene/build.h"
 #include "scene/world_view.h"
 
@@ -24,6 +25,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 // What a frame of a set shows when the deck names no fields; `mixed`: water and soil meet.
 std::vector<std::string> usual_fields(const std::string& set, bool mixed) {
+  if (set.starts_with("solids")) return {"velocity", "cauchy_stress", "von_mises", "part"};
   if (set != "water" && set != "soil") return {"velocity", "normal", "part"};
   std::vector<std::string> names{"velocity", "pressure", "density", "surface", "part"};
   if (set == "soil") names = {"velocity", "stress", "pressure", "plastic_strain", "volume_fraction", "part"};
@@ -53,7 +55,7 @@ std::vector<Column> run_columns(bool soil) {
           {"momentum_z", "kg m/s", "momentum of all that moves"},
           {"kinetic", "J", "kinetic energy"},
           {"potential", "J", "potential energy"},
-          {"internal", "J", "energy of compression of water, elastic energy of soil"},
+          {"internal", "J", "energy of compression of water, elastic energy of soil and solids"},
           {"wall_seconds", "s", "wall time since the start"}};
   if (soil) {
     columns.push_back({"dissipated", "J", "energy dissipated by plastic flow of the soil"});
@@ -73,15 +75,17 @@ std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& 
   const auto present = [&](const std::string& s) { return std::find(sets.begin(), sets.end(), s) != sets.end(); };
   std::vector<Wish> wishes;
   for (const auto& p : model.probes)
-    for (const FieldRequest& r : dynamic_cast<const Probe&>(*p).needs())
+    for (const FieldRequest& r : dynamic_cast<const Probe&>(*p).needs(model))
       if (present(r.set)) wishes.push_back({r.set, r.field->name, "probe " + p->name});
   for (const std::string& set : sets)
-    if (set != "walls")
+    if (set != "walls" && set != "skin")
       for (const auto& asked = model.output.frames.fields;
            const std::string& f : asked.empty() ? usual_fields(set, present("water") && present("soil")) : asked)
         wishes.push_back({set, f, "frames", true});  // a set without that field shows the others
   if (present("water")) wishes.push_back({"water", "pressure", "run.csv"});
   if (present("soil")) wishes.push_back({"soil", "volume", "run.csv"});
+  for (const std::string& set : sets)
+    if (set.starts_with("solids")) wishes.push_back({set, "strain_energy", "run.csv", true});  // none of rigid ones
   return wishes;
 }
 
@@ -213,11 +217,28 @@ void Recorder<Dim>::add_soil_totals(const ParticleSet<Dim>& soil, Totals& sum) c
 }
 
 template <int Dim>
+void Recorder<Dim>::add_solid_totals(const ParticleSet<Dim>& solids, Totals& sum) const {
+  const Energies e = solid_energies(WorldView<Dim>(world_), solids.name());
+  const auto& m = solids.scalar(fields::mass);
+  const auto& v = solids.vector(fields::velocity);
+  const Index n = solids.size();
+  sum.kinetic += e.kinetic;
+  sum.potential += e.potential;
+  sum.internal += e.internal;
+  sum.mass += ordered_sum(n, [&](Index i) { return m[i]; });
+  const Vec3 momentum = to_space<Dim>(ordered_sum(n, [&](Index i) -> Vec<Dim> { return m[i] * v[i]; }));
+  for (std::size_t k = 0; k < 3; ++k) sum.momentum[k] += momentum[static_cast<Index>(k)];
+  sum.max_speed = std::max(sum.max_speed, std::sqrt(block_max(n, [&](Index i) { return v[i].squaredNorm(); }, 0.0)));
+}
+
+template <int Dim>
 typename Recorder<Dim>::Totals Recorder<Dim>::totals() const {
   Totals sum;
   sum.time = world_.clock.time;
   const ParticleSet<Dim>* water = world_.find("water");
   if (const ParticleSet<Dim>* soil = world_.find("soil")) add_soil_totals(*soil, sum);
+  for (const auto& set : world_.sets())
+    if (set->phase() == "solid") add_solid_totals(*set, sum);
   if (!water) return sum;
   const auto& m = water->scalar(fields::mass);
   const auto& rho = water->scalar(fields::density);

@@ -81,6 +81,7 @@ class Recorder {
   void sample_run(double wall_seconds);
   Totals totals() const;
   void add_soil_totals(const ParticleSet<Dim>& soil, Totals& sum) const;
+  void add_solid_totals(const ParticleSet<Dim>& solids, Totals& sum) const;
   void write_set(const ParticleSet<Dim>& set);
   void write_boundaries();
   std::vector<std::string> frame_fields(const ParticleSet<Dim>& set) const;

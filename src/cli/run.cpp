@@ -168,6 +168,7 @@ class DeckRun {
     summary_.threads = threads();
     summary_.advection_steps = world.clock.advection_steps;
     summary_.acoustic_steps = world.clock.acoustic_steps;
+    summary_.solid_steps = world.clock.solid_steps;
     summary_.time_s = world.clock.time;
     summary_.wall_s = wall_before_ + seconds_since(start_);
     summary_.memory_peak_bytes = peak_memory_bytes();

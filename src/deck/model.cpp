@@ -5,6 +5,13 @@
 
 namespace sphgeo {
 
+Schema<ClampedRegion> ClampedRegion::schema() {
+  Schema<ClampedRegion> s("clamped region", "A part of a solid body that rests, or moves as prescribed.");
+  s.required("shape", &ClampedRegion::shape, unit::none, "the region; what of the body is inside of it at t = 0 is clamped");
+  s.optional("motion", &ClampedRegion::motion, unit::none, "prescribed motion; without one the region rests");
+  return s;
+}
+
 Schema<Body> Body::schema() {
   Schema<Body> s("body", "A region filled with particles of one material at t = 0.");
   s.required("name", &Body::name, unit::none, "the name of its particles and files");
@@ -48,6 +55,11 @@ Schema<Body> Body::schema() {
              "initial degree of saturation of soil; it matters only with a saturated_cohesion")
       .only_of("xyz")
       .equation("Eq. 108");
+  s.optional("spacing", &Body::spacing, unit::length,
+             "particle spacing of a solid, where it differs from the deck's resolution; auto: the resolution")
+      .above(0)
+      .equation("section 3.5");
+  s.optional("clamped", &Body::clamped, unit::none, "parts of an elastic solid that rest or move as prescribed").items(0, 1000);
   s.check([](Body& b, CheckContext& c) {
     if (b.level && b.pressure.word != "hydrostatic" && b.stress != "geostatic") {
       c.error("level", "'level' has no meaning unless pressure is hydrostatic",
@@ -155,6 +167,11 @@ Schema<Numerics> Numerics::schema() {
              "whether inner soil particles are shifted to an even spacing: for cohesive soil, against "
              "tensile instability")
       .equation("Eq. 87");
+  s.optional("h_factor_solid", &Numerics::h_factor_solid, unit::none, "smoothing length of solids over their particle spacing; auto: 1.15")
+      .at_least(0.8)
+      .at_most(3)
+      .equation("below Eq. 102");
+  s.optional("cfl_solid", &Numerics::cfl_solid, unit::none, "CFL number of the time step of solids").above(0).at_most(1).equation("Eq. 94");
   s.optional("max_lost_fraction", &Numerics::max_lost_fraction, unit::none,
              "the run stops when more than this fraction of a set has left the domain or sits inside a "
              "wall")

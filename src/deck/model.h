@@ -12,9 +12,17 @@
 #include "core/diagnostic.h"
 #include "core/types.h"
 #include "deck/interfaces.h"
+#include "deck/motion.h"
 #include "deck/schema.h"
 
 namespace sphgeo {
+
+/// A part of a solid body that does not move freely.
+struct ClampedRegion {
+  std::shared_ptr<const Shape> shape;  ///< the part of the body inside of it, at t = 0
+  std::optional<Motion> motion;        ///< empty: it rests
+  static Schema<ClampedRegion> schema();
+};
 
 /// A body of one material that fills a shape at t = 0.
 struct Body {
@@ -32,6 +40,8 @@ struct Body {
   std::optional<Expression> volume_fraction;   ///< of soil, initial; empty: the material's
   std::optional<Expression> porosity;          ///< 1 - volume_fraction, instead of it
   Expression saturation;                       ///< of soil, initial degree of saturation
+  std::optional<double> spacing;               ///< of a solid, m; empty: the deck's resolution
+  std::vector<ClampedRegion> clamped;          ///< of an elastic solid
   static Schema<Body> schema();
 };
 
@@ -54,6 +64,8 @@ struct Numerics {
   std::string soil_velocity_gradient = "corrected";  ///< corrected | plain sum of Eq. 55
   std::string volume_fraction_reinitialization = "summation";  ///< summation | none
   bool transport_velocity_soil = false;  ///< Eq. 87 for soil
+  std::optional<double> h_factor_solid;  ///< h / dp; empty: 1.15
+  double cfl_solid = 0.6;                ///< Eq. 94
   std::string pore_water = "equal_mass";  ///< equal_mass | variable_mass | constant_volume, of water in soil
   double water_fraction_floor = 0.05;     ///< least n^w of Eq. 56
   bool transport_target_volume = true;    ///< V^tar of Eq. 88, or the volume at rest of clear water (Eq. 87)

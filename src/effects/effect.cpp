@@ -12,6 +12,10 @@ const char* stage_name(Stage stage) {
     case Stage::kick: return "kick";
     case Stage::rate: return "rate";
     case Stage::correct: return "correct";
+    case Stage::solid_predict: return "solid_predict";
+    case Stage::solid_force: return "solid_force";
+    case Stage::solid_kick: return "solid_kick";
+    case Stage::solid_finish: return "solid_finish";
     case Stage::observe: return "observe";
   }
   return "";

@@ -20,10 +20,15 @@ enum class Stage {
   kick,          ///< velocity and place at the end (Eqs. 97, 98)
   rate,          ///< rates of density with the new velocity (Eq. 58)
   correct,       ///< density at the end (Eq. 98)
+  solid_predict, ///< kappa times per acoustic step: solids to the middle of their own step (Eq. 99)
+  solid_force,   ///< their accelerations there (Eqs. 65, 79)
+  solid_kick,    ///< their velocity and place at its end (Eqs. 100, 101)
+  solid_finish,  ///< once per acoustic step: what water and soil see of the solids (Eq. 95)
   observe        ///< only when a probe or a frame is due
 };
 inline constexpr Stage all_stages[] = {Stage::reinitialize, Stage::predict, Stage::force, Stage::kick,
-                                       Stage::rate, Stage::correct, Stage::observe};
+                                       Stage::rate, Stage::correct, Stage::solid_predict, Stage::solid_force,
+                                       Stage::solid_kick, Stage::solid_finish, Stage::observe};
 const char* stage_name(Stage stage);
 
 /// read: the value is needed. write: set from scratch. add: summed onto a value that another effect
@@ -43,6 +48,7 @@ struct ListUse {
 struct Needs {
   std::vector<FieldUse> fields;
   std::vector<ListUse> lists;
+  std::vector<std::string> reference_lists = {};  ///< sets of solids whose pairs at rest are walked
 };
 
 /// What `check --explain`, the time table and the reference page say of an effect.
@@ -55,10 +61,11 @@ struct EffectInfo {
   bool supporting = false;
 };
 
-/// Upper bounds of the two clocks, s, and the fastest particle that they rest on.
+/// Upper bounds of the three clocks, s, and the fastest particle that they rest on.
 struct StepLimits {
   double advection = std::numeric_limits<double>::infinity();
   double acoustic = std::numeric_limits<double>::infinity();
+  double solid = std::numeric_limits<double>::infinity();
   double mach = 0;       ///< largest |v| / c of any set; NaN when a velocity is no number
   std::string fastest;   ///< the set that holds it
 
@@ -114,6 +121,7 @@ struct Binding {
   std::string because;
 
   Binding(std::string why_not) : because(std::move(why_not)) {}
+  Binding(const char* why_not) : because(why_not) {}
   template <class E>
   Binding(std::unique_ptr<E> effect, std::string why) : because(std::move(why)) {
     effects.push_back(std::move(effect));

@@ -61,6 +61,18 @@ inline constexpr FieldSpec gradient_scale{"gradient_scale", scalar, state, unit:
 inline constexpr FieldSpec drag_acceleration{"drag_acceleration", vector, state, unit::acceleration,
                                              "acceleration of water by drag in the last acoustic step"};
 
+// Solids.
+inline constexpr FieldSpec reference_volume{"reference_volume", scalar, reference, unit::volume, "volume at t = 0; an area in 2D"};
+inline constexpr FieldSpec clamp{"clamp", tag, reference, unit::none, "index of the clamped region of its body, -1 where the body is free"};
+inline constexpr FieldSpec reference_correction{"reference_correction", tensor, derived, unit::none,
+                                                "inverse moment of the kernel gradient at rest, Eq. 66: xx, yy, zz, xy, yz, xz"};
+inline constexpr FieldSpec mean_velocity{"mean_velocity", vector, state, unit::speed, "velocity, averaged over the steps of solids in the last acoustic step"};
+inline constexpr FieldSpec fluid_force{"fluid_force", vector, derived, unit::force, "force of water and soil on a particle of a solid"};
+inline constexpr FieldSpec cauchy_stress{"cauchy_stress", tensor, derived, unit::pressure,
+                                         "stress of a solid, tension positive: xx, yy, zz, xy, yz, xz"};
+inline constexpr FieldSpec von_mises{"von_mises", scalar, derived, unit::pressure, "equivalent stress after von Mises"};
+inline constexpr FieldSpec strain_energy{"strain_energy", scalar, derived, unit::energy, "elastic energy of a particle, Eq. 39; J per metre of depth in 2D"};
+
 /// All of them, for lookups by name.
 inline constexpr const FieldSpec* all[] = {&id, &part, &position, &velocity, &acceleration,
                                            &acceleration_sum, &mass,
@@ -69,6 +81,8 @@ inline constexpr const FieldSpec* all[] = {&id, &part, &position, &velocity, &ac
                                            &volume_fraction, &volume_fraction_rate, &initial_volume_fraction, &stress, &crowding, &gradient_correction,
                                            &plastic_strain, &plastic_work, &water_acceleration, &pore_pressure, &saturation,
                                            &water_fraction, &soil_sum, &inverse_soil_mass, &drag_linear, &drag_quadratic,
-                                           &pressure_force, &soil_velocity, &gradient_scale, &drag_acceleration};
+                                           &pressure_force, &soil_velocity, &gradient_scale, &drag_acceleration,
+                                           &reference_volume, &clamp, &reference_correction, &mean_velocity, &fluid_force,
+                                           &cauchy_stress, &von_mises, &strain_energy};
 
 }  // namespace sphgeo::fields

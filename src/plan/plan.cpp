@@ -42,6 +42,7 @@ Plan<Dim>::Plan(World<Dim>& world, const std::vector<Wish>& wishes) : world_(wor
   for (auto& e : effects_) {
     for (const FieldUse& use : e.needs.fields) world_.set(use.set).require(*use.field);
     for (const ListUse& list : e.needs.lists) world_.require_list(list.target, list.source);
+    for (const std::string& set : e.needs.reference_lists) world_.require_reference_list(set);
   }
   check_producers(wishes);
   order();
@@ -169,6 +170,8 @@ template <int Dim>
 StepLimits Plan<Dim>::limits() const {
   StepLimits limits;
   for (const auto& e : effects_) e.effect->limit(world_, limits);
+  // Where solids are alone, the acoustic step is theirs.
+  if (limits.acoustic == std::numeric_limits<double>::infinity()) limits.acoustic = limits.solid;
   return limits;
 }
 

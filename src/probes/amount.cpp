@@ -25,7 +25,7 @@ struct AmountProbe final : Probe {
             {"count", "1", "number of particles"},
             {"own_volume", flat ? "m2" : "m3", "sum of m / rho: of water without the soil it is in, of soil without pores"}};
   }
-  std::vector<FieldRequest> needs() const override {
+  std::vector<FieldRequest> needs(const Model&) const override {
     std::vector<FieldRequest> out{{set, &fields::mass}, {set, &fields::volume}};
     if (const FieldSpec* f = own_field()) out.push_back({set, f});
     return out;

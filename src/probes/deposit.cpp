@@ -35,7 +35,7 @@ struct DepositProbe final : Probe {
             {"height", "m", "height over the origin"},
             {"slope_angle", "deg", "slope between 20 and 80 % of the crest, a line fitted to the heights; empty for a flat heap"}};
   }
-  std::vector<FieldRequest> needs() const override { return {{set, &fields::position}}; }
+  std::vector<FieldRequest> needs(const Model&) const override { return {{set, &fields::position}}; }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     if (!scene.has_set(set) || scene.size(set) == 0) return;

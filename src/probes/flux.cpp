@@ -31,7 +31,7 @@ struct FluxProbe final : Probe {
   std::vector<Column> columns(const Model& model) const override {
     return {{"flow", model.dimension == 2 ? "m2/s" : "m3/s", "volume per time through the plane"}};
   }
-  std::vector<FieldRequest> needs() const override { return {{set, &fields::velocity}, {set, &fields::volume}}; }
+  std::vector<FieldRequest> needs(const Model&) const override { return {{set, &fields::velocity}, {set, &fields::volume}}; }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     if (!scene.has_set(set)) return;

@@ -29,7 +29,7 @@ struct FrontProbe final : Probe {
   std::vector<Column> columns(const Model&) const override {
     return {{"position", "m", "foremost particle along the direction, plus half a spacing"}};
   }
-  std::vector<FieldRequest> needs() const override { return {{set, &fields::position}}; }
+  std::vector<FieldRequest> needs(const Model&) const override { return {{set, &fields::position}}; }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     if (!scene.has_set(set)) return;

@@ -42,7 +42,7 @@ struct MeanProbe final : Probe {
     if (over) out.push_back({"ratio", "1", "mean over the mean in the second region"});
     return out;
   }
-  std::vector<FieldRequest> needs() const override {
+  std::vector<FieldRequest> needs(const Model&) const override {
     const FieldSpec* f = scalar_field(field);
     return {{set, f ? f : &fields::mass}, {set, &fields::position}};
   }

@@ -25,7 +25,7 @@ struct MomentsProbe final : Probe {
     columns.push_back({"area", model.dimension == 2 ? "m2" : "m3", "area (volume in 3D) of that ellipse"});
     return columns;
   }
-  std::vector<FieldRequest> needs() const override { return {{set, &fields::mass}, {set, &fields::position}}; }
+  std::vector<FieldRequest> needs(const Model&) const override { return {{set, &fields::mass}, {set, &fields::position}}; }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     if (!scene.has_set(set) || scene.size(set) == 0) return;

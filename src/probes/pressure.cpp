@@ -18,7 +18,7 @@ struct PressureProbe final : Probe {
     return {{"pressure", "Pa", "water pressure; empty where there is no water"},
             {"support", "1", "share of the kernel filled with water"}};
   }
-  std::vector<FieldRequest> needs() const override { return {{"water", &fields::pressure}, {"water", &fields::volume}}; }
+  std::vector<FieldRequest> needs(const Model&) const override { return {{"water", &fields::pressure}, {"water", &fields::volume}}; }
   std::vector<Vec3> places() const override { return {at}; }
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     const PointFit fit(scene, "water", at);

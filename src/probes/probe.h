@@ -21,7 +21,7 @@ struct FieldRequest {
 /// A measurement that a deck asks for. Empty values mean that there is nothing to measure there.
 struct Probe : ProbeSpec {
   virtual std::vector<Column> columns(const Model& model) const = 0;
-  virtual std::vector<FieldRequest> needs() const = 0;
+  virtual std::vector<FieldRequest> needs(const Model& model) const = 0;
   /// One value per column.
   virtual void sample(const SceneView& scene, std::span<std::optional<double>> out) const = 0;
   /// Reports what is wrong with the probe in this deck, such as an unknown name.

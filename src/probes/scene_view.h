@@ -18,6 +18,7 @@ class SceneView {
   virtual const Model& model() const = 0;
   virtual double time() const = 0;
   virtual bool has_set(const std::string& set) const = 0;
+  virtual bool has_field(const std::string& set, const FieldSpec& field) const = 0;
   virtual Index size(const std::string& set) const = 0;
   virtual double spacing(const std::string& set) const = 0;
   virtual double smoothing_length(const std::string& set) const = 0;

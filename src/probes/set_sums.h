@@ -15,6 +15,7 @@ struct Energies {
   double potential = 0;   ///< in the deck's gravity, about the origin
   double internal = 0;    ///< of compression, zero at rho0
   double total() const { return kinetic + potential + internal; }
+  Energies operator+(const Energies& e) const { return {kinetic + e.kinetic, potential + e.potential, internal + e.internal}; }
 };
 
 inline Energies water_energies(const SceneView& scene) {

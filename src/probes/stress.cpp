@@ -30,7 +30,7 @@ struct StressProbe final : Probe {
             {"volume_fraction", "1", "share of the grains in the volume"},
             {"support", "1", "share of the kernel filled with soil"}};
   }
-  std::vector<FieldRequest> needs() const override {
+  std::vector<FieldRequest> needs(const Model&) const override {
     return {{"soil", &fields::stress}, {"soil", &fields::volume}, {"soil", &fields::plastic_strain}, {"soil", &fields::volume_fraction}};
   }
   std::vector<Vec3> places() const override { return {at}; }

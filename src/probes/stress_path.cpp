@@ -49,7 +49,7 @@ struct StressPathProbe final : Probe {
             {"plastic_strain", "1", "equivalent plastic strain"},
             {"plastic_work", "J/m3", "plastic work per volume"}};
   }
-  std::vector<FieldRequest> needs() const override { return {}; }
+  std::vector<FieldRequest> needs(const Model&) const override { return {}; }
   void inspect(const Model& model, CheckContext& c) const override {
     if (!dynamic_cast<const Soil*>(model.material(material)))
       c.error("material", "there is no soil material '" + material + "'", "name an entry of 'materials' that is of type soil", "E021");

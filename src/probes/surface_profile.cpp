@@ -30,7 +30,7 @@ struct SurfaceProfileProbe final : Probe {
     }
     return columns;
   }
-  std::vector<FieldRequest> needs() const override { return {{set, &fields::volume}}; }
+  std::vector<FieldRequest> needs(const Model&) const override { return {{set, &fields::volume}}; }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     std::vector<Vec3> places;

@@ -19,7 +19,7 @@ struct VelocityProbe final : Probe {
   std::vector<Column> columns(const Model& model) const override {
     return vector_columns(model, "v", unit::speed, "velocity; empty where there is nothing");
   }
-  std::vector<FieldRequest> needs() const override { return {{set, &fields::velocity}, {set, &fields::volume}}; }
+  std::vector<FieldRequest> needs(const Model&) const override { return {{set, &fields::velocity}, {set, &fields::volume}}; }
   std::vector<Vec3> places() const override { return {at}; }
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     const PointFit fit(scene, set, at);

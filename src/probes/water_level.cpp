@@ -22,7 +22,7 @@ struct WaterLevelProbe final : Probe {
     if (minus) out.push_back({"difference", "m", "level less that at the second place"});
     return out;
   }
-  std::vector<FieldRequest> needs() const override { return {{"water", &fields::volume}}; }
+  std::vector<FieldRequest> needs(const Model&) const override { return {{"water", &fields::volume}}; }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     const auto levels = surface_heights(scene, "water", minus ? std::vector<Vec3>{at, *minus} : std::vector<Vec3>{at});

@@ -13,6 +13,7 @@
 #include "relax/pore_water.h"
 #include "scene/join_walls.h"
 #include "scene/soil.h"
+#include "scene/solid.h"
 
 namespace sphgeo {
 
@@ -42,7 +43,7 @@ double support_radius(const Model& model) {
 }
 
 BodyPoints fill_body(const Body& body, const Model& model) {
-  const double dp = model.resolution;
+  const double dp = body.spacing.value_or(model.resolution);
   if (body.filling == "relaxed") {
     RelaxFillResult relaxed = relax_fill(*body.shape, dp, model.dimension);
     return {std::move(relaxed.positions), relaxed.particle_volume};
@@ -238,6 +239,7 @@ Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling) 
   }
   add_water(scene, model, filling, found);
   add_soil(scene, model, filling, found);
+  add_solids(scene, model, filling, found);
   add_walls(scene, model, filling, found);
   if (filling != Filling::none) set_domain(*scene.world, model);
   return scene;

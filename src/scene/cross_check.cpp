@@ -126,7 +126,7 @@ void check_probes(const World<Dim>& world, Diagnostics& found) {
         found.warning("W123", model.place_of(path + ".at"), path + ".at",
                       fmt::format("probe '{}' at {} lies outside of everything in the scene", probe.name, point_text(at)),
                       fmt::format("the scene spans x from {:.4g} to {:.4g} m and z from {:.4g} to {:.4g} m", box.lo.x(), box.hi.x(), box.lo.z(), box.hi.z()));
-    for (const FieldRequest& r : probe.needs())
+    for (const FieldRequest& r : probe.needs(model))
       if (!world.find(r.set)) {
         std::vector<std::string> names;
         for (const auto& s : world.sets()) names.push_back(s->name());

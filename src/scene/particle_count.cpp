@@ -2,6 +2,7 @@
 
 #include "boundaries/boundary.h"
 #include "geometry/fill.h"
+#include "materials/solid.h"
 #include "relax/pore_water.h"
 #include "scene/build.h"
 
@@ -25,7 +26,8 @@ ParticleCounts expected_particles(const Model& model) {
   for (std::size_t k = 0; k < model.bodies.size(); ++k) {
     const Body& b = model.bodies[k];
     if (const MaterialSpec* m = model.material(b.material); m && b.shape)
-      add(counts, m->phase(), shares[k] * estimate_fill(*b.shape, model.resolution, model.dimension, {}));
+      add(counts, m->phase() == "solid" ? solid_set_of(model, k) : m->phase(),
+          shares[k] * estimate_fill(*b.shape, b.spacing.value_or(model.resolution), model.dimension, {}));
   }
   const Placement placement{model.resolution, support_radius(model), model.dimension};
   for (const auto& b : model.boundaries)
@@ -47,6 +49,9 @@ double total_of(const ParticleCounts& counts) {
 
 Model at_resolution(const Model& model, double spacing) {
   Model other = model;
+  // Solids of their own spacing keep its ratio to the others'.
+  for (Body& b : other.bodies)
+    if (b.spacing) *b.spacing *= spacing / model.resolution;
   other.resolution = spacing;
   return other;
 }

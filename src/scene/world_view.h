@@ -16,6 +16,7 @@ class WorldView final : public SceneView {
   const Model& model() const override { return world_.model(); }
   double time() const override { return world_.clock.time; }
   bool has_set(const std::string& set) const override { return world_.find(set) != nullptr; }
+  bool has_field(const std::string& set, const FieldSpec& field) const override { return has_set(set) && world_.set(set).has(field); }
   Index size(const std::string& set) const override { return world_.set(set).size(); }
   double spacing(const std::string& set) const override { return world_.set(set).spacing(); }
   double smoothing_length(const std::string& set) const override { return world_.set(set).smoothing_length(); }

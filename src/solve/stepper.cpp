@@ -49,7 +49,7 @@ bool Stepper<Dim>::advance(const RunHooks& hooks) {
     const double steps = std::max(1.0, std::ceil(left_ / limits.acoustic - 1e-9));
     const double dt = left_ / steps;
     guard_.before_step(limits, dt);
-    acoustic_step(dt);                                   // lines 16 to 25
+    acoustic_step(dt, limits.solid);                     // lines 16 to 25
     left_ = steps == 1 ? 0 : left_ - dt;
     clock.time = left_ == 0 ? start_ + clock.dt_advection : clock.time + dt;  // line 26
   }
@@ -58,16 +58,35 @@ bool Stepper<Dim>::advance(const RunHooks& hooks) {
 }
 
 template <int Dim>
-void Stepper<Dim>::acoustic_step(double dt) {
+void Stepper<Dim>::acoustic_step(double dt, double solid_limit) {
   world_.clock.dt_acoustic = dt;
   plan_.run(Stage::predict);   // Eq. 96
   plan_.run(Stage::force);     // Eq. 60
   plan_.run(Stage::kick);      // Eqs. 97, 98
   plan_.run(Stage::rate);      // Eq. 58
   plan_.run(Stage::correct);   // Eq. 98
+  if (solid_limit < std::numeric_limits<double>::infinity()) solid_steps(dt, solid_limit);
   ++world_.clock.acoustic_steps;
   for (const auto& set : world_.sets())
-    if (set->phase() != "wall") particle_updates_ += static_cast<double>(set->size());
+    if (set->phase() == "water" || set->phase() == "soil") particle_updates_ += static_cast<double>(set->size());
+}
+
+// Lines 19 to 25. Their number is fixed here, so that the averages of Eq. 95 are exact.
+template <int Dim>
+void Stepper<Dim>::solid_steps(double dt, double limit) {
+  Clock& clock = world_.clock;
+  clock.solid_steps_each = static_cast<int>(std::clamp(std::ceil(dt / limit - 1e-9), 1.0, 1e9));
+  clock.dt_solid = dt / clock.solid_steps_each;
+  for (clock.solid_step = 0; clock.solid_step < clock.solid_steps_each; ++clock.solid_step) {
+    plan_.run(Stage::solid_predict);  // Eq. 99
+    plan_.run(Stage::solid_force);    // Eq. 65
+    plan_.run(Stage::solid_kick);     // Eqs. 100, 101
+    ++clock.solid_steps;
+    for (const auto& set : world_.sets())
+      if (set->phase() == "solid") particle_updates_ += static_cast<double>(set->size());
+  }
+  clock.solid_step = 0;
+  plan_.run(Stage::solid_finish);     // Eq. 95
 }
 
 template <int Dim>

@@ -46,7 +46,8 @@ class Stepper {
   void rearrange();
   void begin_step();
   bool advance(const RunHooks& hooks);
-  void acoustic_step(double dt);
+  void acoustic_step(double dt, double solid_limit);
+  void solid_steps(double dt, double limit);
 
   World<Dim>& world_;
   Plan<Dim>& plan_;

@@ -185,6 +185,10 @@ void NeighborList::build(std::span<const Vec<Dim>> targets, const CellGrid<Dim>&
     search_block<Dim>(targets, sources, scale, pairing, begin, end,
                       blocks_[static_cast<std::size_t>(b)]);
   });
+  count_pairs();
+}
+
+void NeighborList::count_pairs() {
   active_ = 0;
   pairs_ = 0;
   for (const Block& block : blocks()) {

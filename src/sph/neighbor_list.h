@@ -43,6 +43,10 @@ class NeighborList {
   void build(std::span<const Vec<Dim>> targets, const CellGrid<Dim>& sources, double radius,
              Pairing pairing);
 
+  /// Keeps the pairs (i, j) for which keep(i, j) holds; targets that have none left are walked as before.
+  template <class F>
+  void filter(F&& keep);
+
   /// Blocks in the order of targets; those without walked targets are left out of no index.
   std::span<const Block> blocks() const { return {blocks_.data(), block_count_}; }
 
@@ -63,6 +67,8 @@ class NeighborList {
   }
 
  private:
+  void count_pairs();
+
   std::vector<Block> blocks_;
   std::size_t block_count_ = 0;
   Index targets_ = 0;
@@ -70,5 +76,22 @@ class NeighborList {
   Index active_ = 0;
   Index pairs_ = 0;
 };
+
+template <class F>
+void NeighborList::filter(F&& keep) {
+  const auto null_offset = static_cast<std::uint32_t>(sources_ * 8);
+  for (std::size_t b = 0; b < block_count_; ++b) {
+    Block& block = blocks_[b];
+    for (std::size_t k = 0; k < block.size(); ++k) {
+      std::uint32_t* entry = block.entries.data() + block.begin[k];
+      std::uint32_t kept = 0;
+      for (std::uint32_t e = 0; e < block.count[k]; ++e)
+        if (keep(static_cast<Index>(block.targets[k]), static_cast<Index>(entry[e] / 8))) entry[kept++] = entry[e];
+      for (std::uint32_t e = kept; e < block.count[k]; ++e) entry[e] = null_offset;
+      block.count[k] = kept;
+    }
+  }
+  count_pairs();
+}
 
 }  // namespace sphgeo

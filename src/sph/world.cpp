@@ -44,6 +44,13 @@ ParticleSet<Dim>& World<Dim>::add_set(std::string name, std::string phase, doubl
 }
 
 template <int Dim>
+ParticleSet<Dim>& World<Dim>::add_solids(std::string name, double spacing, double h) {
+  ParticleSet<Dim>& set = add_set(std::move(name), "solid", spacing, h, true);
+  for (const FieldSpec* spec : {&fields::mass, &fields::reference_position, &fields::reference_volume}) set.require(*spec);
+  return set;
+}
+
+template <int Dim>
 ParticleSet<Dim>* World<Dim>::find(const std::string& name) const {
   for (const auto& s : sets_)
     if (s->name() == name) return s.get();
@@ -92,11 +99,13 @@ void World<Dim>::remove_lost(ParticleSet<Dim>& set) {
   for (Index i = 0; i < set.size(); ++i) {
     if (!outside(i)) continue;
     const bool lost = x[i].allFinite();  // what has no place at all has not left: it is broken
-    if (lost && model_.numerics.outside != "stop") continue;
+    if (lost && model_.numerics.outside != "stop" && set.phase() != "solid") continue;
     const Vec3 at = to_space<Dim>(x[i]);
     throw UnstableError(
-        lost ? fmt::format("particle {} of set '{}' left the domain at ({:.4g}, {:.4g}, {:.4g}) m, t = {:.6g} s; "
-                           "numerics.outside is 'stop'", set.ids()[i], set.name(), at.x(), at.y(), at.z(), clock.time)
+        lost ? fmt::format("particle {} of set '{}' left the domain at ({:.4g}, {:.4g}, {:.4g}) m, t = {:.6g} s; {}",
+                           set.ids()[i], set.name(), at.x(), at.y(), at.z(), clock.time,
+                           set.phase() == "solid" ? "a solid cannot lose particles: give a larger numerics.domain_min or domain_max, or something that holds it"
+                                                  : "numerics.outside is 'stop'")
              : fmt::format("the position of particle {} of set '{}' is not finite at t = {:.6g} s", set.ids()[i], set.name(), clock.time),
         {lost ? "lost" : "not_finite", "", set.name(), set.ids()[i], at, clock.time});
   }
@@ -115,10 +124,47 @@ void World<Dim>::rearrange() {
     const bool moves = moves_[s->name()];
     if (!moves && grids_[s->name()].size() == s->size()) continue;
     if (moves) remove_lost(*s);
+    if (s->phase() == "solid") {
+      arrange_solids(*s);
+      continue;
+    }
     sort(*s, places_of(*s));
     if (records_.contains({s->name(), 0})) pack_positions(*s);
   }
   for (auto& [key, list] : lists_) build_list(key, list, places_of(set(key.first)));
+}
+
+template <int Dim>
+bool World<Dim>::is_rigid(std::int32_t part) const {
+  const MaterialSpec* material = model_.material(model_.bodies[static_cast<std::size_t>(part)].material);
+  return material && material->type == "rigid";
+}
+
+// Solids are sorted once, by their reference positions, which also find their neighbors for good; the grid is that
+// of the places they are at.
+template <int Dim>
+void World<Dim>::arrange_solids(ParticleSet<Dim>& set) {
+  const auto list = reference_lists_.find(set.name());
+  const bool first = !grids_.contains(set.name());
+  if (first) {
+    CellGrid<Dim> rest;
+    const auto& x = set.vector(fields::reference_position);
+    const auto places = [&] { return std::span<const Vec<Dim>>(x.data(), static_cast<std::size_t>(x.size())); };
+    rest.build(places(), frame_, 2 * set.smoothing_length());
+    set.permute(rest.order());
+    rest.set_sorted();
+    for (auto& [key, record] : records_) {
+      if (key.first != set.name()) continue;
+      if (single_) record.single.resize(set.size(), frame_);
+      else record.full.resize(set.size(), frame_);
+    }
+    if (list != reference_lists_.end()) {
+      list->second.template build<Dim>(places(), rest, 2 * set.smoothing_length(), Pairing::within);
+      const auto& part = set.tag(fields::part);
+      list->second.filter([&](Index i, Index j) { return part[i] == part[j] && !is_rigid(part[i]); });
+    }
+  }
+  grids_[set.name()].build(places_of(set), frame_, reach());
 }
 
 // By the cells of the places `at`; makes room in the records.
@@ -158,6 +204,7 @@ std::size_t World<Dim>::bytes() const {
   for (const auto& [name, r] : records_) sum += r.single.bytes() + r.full.bytes();
   for (const auto& [name, g] : grids_) sum += g.bytes();
   for (const auto& [key, l] : lists_) sum += l.bytes();
+  for (const auto& [key, l] : reference_lists_) sum += l.bytes();
   return sum;
 }
 
@@ -168,6 +215,7 @@ void World<Dim>::save(StateSink& sink) const {
   sink.put_number("clock/dt_advection", clock.dt_advection);
   sink.put_count("clock/advection_steps", clock.advection_steps);
   sink.put_count("clock/acoustic_steps", clock.acoustic_steps);
+  sink.put_count("clock/solid_steps", clock.solid_steps);
   sink.put("domain/lo", std::span<const double>(lo_.data(), Dim));
   sink.put("domain/hi", std::span<const double>(hi_.data(), Dim));
   for (const auto& [name, n] : lost_) sink.put_count("lost/" + name, n);
@@ -181,6 +229,7 @@ void World<Dim>::load(const StateSource& source) {
   clock.dt_advection = source.number("clock/dt_advection");
   clock.advection_steps = source.count("clock/advection_steps");
   clock.acoustic_steps = source.count("clock/acoustic_steps");
+  clock.solid_steps = source.count("clock/solid_steps");
   Vec<Dim> lo, hi;
   source.get("domain/lo", std::span<double>(lo.data(), Dim));
   source.get("domain/hi", std::span<double>(hi.data(), Dim));
@@ -206,7 +255,7 @@ std::vector<Vec<Dim>> World<Dim>::arranged_places(const std::string& set) const 
 template <int Dim>
 void World<Dim>::save_arrangement(StateSink& sink) const {
   for (const auto& s : sets_) {
-    if (!moves_.at(s->name())) continue;
+    if (!moves_.at(s->name()) || s->phase() == "solid") continue;
     const auto n = static_cast<std::size_t>(s->size());
     const CellGrid<Dim>& grid = grids_.at(s->name());
     const auto records = records_.find({s->name(), 0});
@@ -231,6 +280,10 @@ void World<Dim>::load_arrangement(const StateSource& source) {
   for (auto& s : sets_) {
     const auto n = static_cast<std::size_t>(s->size());
     const bool packed = records_.contains({s->name(), 0});
+    if (s->phase() == "solid") {
+      arrange_solids(*s);
+      continue;
+    }
     if (!moves_[s->name()]) {
       sort(*s, places_of(*s));
       if (packed) pack_positions(*s);

@@ -23,8 +23,14 @@ struct Clock {
   double time = 0;          ///< s
   double dt_acoustic = 0;   ///< of the running acoustic step, s
   double dt_advection = 0;  ///< of the running advection step, s
+  double dt_solid = 0;      ///< of the running step of solids within it, s
+  int solid_step = 0;       ///< its number within the acoustic step, from 0
+  int solid_steps_each = 1; ///< how many there are in the acoustic step, kappa
   long advection_steps = 0;
   long acoustic_steps = 0;
+  long solid_steps = 0;
+  /// Begin of the running step of solids, s.
+  double solid_time() const { return time + solid_step * dt_solid; }
 };
 
 /// Packed records of one set in the precision of the pair sums; the other one stays empty.
@@ -55,6 +61,9 @@ class World {
 
   /// Adds a set. `moves` is false for sets whose particles never change place.
   ParticleSet<Dim>& add_set(std::string name, std::string phase, double spacing, double h, bool moves);
+  /// Adds a set of solids: it moves, but keeps its particles, their order and their neighbors at rest. No list but
+  /// the reference list pairs them: what touches them is the set "skin".
+  ParticleSet<Dim>& add_solids(std::string name, double spacing, double h);
   /// Throws std::logic_error when there is none of that name.
   ParticleSet<Dim>& set(const std::string& name) const;
   ParticleSet<Dim>* find(const std::string& name) const;
@@ -63,6 +72,9 @@ class World {
   void require_list(const std::string& target, const std::string& source);
   NeighborList& list(const std::string& target, const std::string& source);
   const std::map<std::pair<std::string, std::string>, NeighborList>& lists() const { return lists_; }
+  /// Pairs of solids within one body, by their reference positions; those of rigid bodies are left out.
+  NeighborList& reference_list(const std::string& set) { return reference_lists_.at(set); }
+  void require_reference_list(const std::string& set) { reference_lists_.try_emplace(set); }
   const CellGrid<Dim>& grid(const std::string& set) const { return grids_.at(set); }
 
   /// Pair sums run in single or double precision: calls f with a value of that type.
@@ -113,6 +125,8 @@ class World {
   std::vector<Vec<Dim>> arranged_places(const std::string& set) const;
 
  private:
+  bool is_rigid(std::int32_t part) const;
+  void arrange_solids(ParticleSet<Dim>& set);
   void remove_lost(ParticleSet<Dim>& set);
   void sort(ParticleSet<Dim>& set, std::span<const Vec<Dim>> at);
   void build_list(const std::pair<std::string, std::string>& key, NeighborList& list, std::span<const Vec<Dim>> at);
@@ -125,6 +139,7 @@ class World {
   std::map<std::string, bool> moves_;
   std::map<std::string, CellGrid<Dim>> grids_;
   std::map<std::pair<std::string, std::string>, NeighborList> lists_;
+  std::map<std::string, NeighborList> reference_lists_;
   std::map<std::pair<std::string, int>, RecordPair<Dim>> records_;
   std::map<std::string, Index> lost_;
   long arrangement_ = 0;

@@ -1,4 +1,4 @@
-#include "boundaries/motion.h"
+#include "deck/motion.h"
 
 #include <doctest/doctest.h>
 

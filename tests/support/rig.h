@@ -59,7 +59,7 @@ struct Rig {
   /// Plans for the deck's probes and for `wishes`, and arranges the particles.
   void plan_it(std::vector<Wish> wishes = {}) {
     for (const auto& p : model.probes)
-      for (const FieldRequest& r : dynamic_cast<const Probe&>(*p).needs())
+      for (const FieldRequest& r : dynamic_cast<const Probe&>(*p).needs(model))
         wishes.push_back({r.set, r.field->name, "probe " + p->name, false});
     plan = std::make_unique<Plan<Dim>>(world, wishes);
     stepper = std::make_unique<Stepper<Dim>>(world, *plan);

@@ -1,5 +1,5 @@
 #pragma once
-// Prescribed rigid motion of a boundary: formulas of t, or a table.
+// Prescribed rigid motion of a boundary or of a part of a body: formulas of t, or a table.
 
 #include <memory>
 #include <optional>
@@ -17,7 +17,7 @@ struct Motion {
   Vec3 axis = Vec3(0, 1, 0);                ///< axis of the rotation; y turns the x-z plane
   Vec3 center = Vec3::Zero();               ///< a point on the axis, m
   std::optional<FilePath> table;            ///< CSV with columns t and any of x, y, z, angle; added to the formulas
-  double from = 0.0;                        ///< the boundary rests before, s
+  double from = 0.0;                        ///< it rests before, s
   std::optional<double> until;              ///< and after, s
 
   static Schema<Motion> schema();

@@ -1,4 +1,4 @@
-#include "boundaries/motion.h"
+#include "deck/motion.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -32,14 +32,14 @@ double interpolate(const std::vector<double>& t, const std::vector<double>& y, d
 }  // namespace
 
 Schema<Motion> Motion::schema() {
-  Schema<Motion> s("motion", "prescribed rigid motion of a boundary");
+  Schema<Motion> s("motion", "prescribed rigid motion of a boundary or of a clamped region");
   s.optional("displacement", &Motion::displacement, unit::length, "displacement as formulas of t");
   s.optional("angle", &Motion::angle, unit::angle, "rotation angle as a formula of t");
   s.optional("axis", &Motion::axis, unit::none, "axis of the rotation; y turns the x-z plane").keep_y();
   s.optional("center", &Motion::center, unit::length, "a point on the axis of the rotation");
   s.optional("table", &Motion::table, unit::none, "CSV file with a column t and any of x, y, z, angle (SI), added to the formulas");
-  s.optional("from", &Motion::from, unit::time, "the boundary rests before this time");
-  s.optional("until", &Motion::until, unit::time, "the boundary rests after this time");
+  s.optional("from", &Motion::from, unit::time, "it rests before this time");
+  s.optional("until", &Motion::until, unit::time, "it rests after this time");
   s.check([](Motion& m, CheckContext& c) {
     m.axis = direction_of(m.axis);
     if (m.axis.isZero(0)) c.error("axis", "the axis has no direction", "give a vector that is not zero");

@@ -1,0 +1,89 @@
+#include "core/parallel.h"
+#include "effects/solid_phase.h"
+
+namespace sphgeo {
+namespace {
+
+/// Upper half of sum of r (x) grad W at rest, by rows.
+template <int Dim>
+struct MomentSum {
+  Kernel<Dim> kernel;
+
+  template <class T>
+  struct Sums {
+    T moment[Dim * (Dim + 1) / 2] = {};
+  };
+  template <class T>
+  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>&, const LaneVec<Dim, T>& r, const T& r2) const {
+    const T gradient = T(-1) * kernel.dw_over_r(r2);
+    for (int k = 0, n = 0; k < Dim; ++k)
+      for (int l = k; l < Dim; ++l, ++n) sum.moment[n] += gradient * r[k] * r[l];
+  }
+};
+
+/// What follows from the places of solids at rest, once: the correction B0 of the gradient (Eq. 66) and the places in
+/// the records.
+template <int Dim>
+class SolidCorrection final : public Effect<Dim> {
+ public:
+  static EffectInfo info() {
+    return {"solid_correction", Stage::reinitialize, "Eq. 66", "correction of the kernel gradient of solids at rest, once", false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) { return bind_solids<SolidCorrection>(world); }
+
+  explicit SolidCorrection(std::string set) : set_(std::move(set)) {}
+  const std::string& set_name() const { return set_; }
+
+  std::string acts_on() const override { return set_; }
+  Needs needs() const override {
+    return {{{set_, &fields::reference_position, Access::read}, {set_, &fields::reference_volume, Access::read},
+             {set_, &fields::reference_correction, Access::write}}, {}, {set_}};
+  }
+  void prepare(World<Dim>& world) override {
+    for (int k = 0; k < (Dim == 2 ? 2 : 3); ++k) world.records(set_, k);
+  }
+
+  void apply(World<Dim>& world) override {
+    if (done_) return;
+    restore(world);
+    const ParticleSet<Dim>& set = world.set(set_);
+    const auto& volume = set.scalar(fields::reference_volume);
+    auto& correction = world.set(set_).tensor(fields::reference_correction);
+    const MomentSum<Dim> pair{Kernel<Dim>(set.smoothing_length())};
+    world.with_pair_precision([&](auto number) {
+      using T = decltype(number);
+      const auto& records = world.records(set_, 0).template get<T>();
+      gather<MomentSum<Dim>::template Sums>(world.reference_list(set_), records, records, pair, [&](Index i, const auto& sum) {
+        double moment[Dim * (Dim + 1) / 2];
+        for (std::size_t n = 0; n < std::size(moment); ++n) moment[n] = volume[i] * sum.moment[n];
+        const InverseMoment<Dim, double> inverse(moment);
+        Sym3 b = Sym3::Zero();
+        b[1] = 1;
+        for (int k = 0; k < Dim; ++k)
+          for (int l = k; l < Dim; ++l) b[tensor_index<Dim>[k][l]] = inverse.entry[k][l];
+        correction[i] = b;
+      });
+    });
+  }
+  void restore(World<Dim>& world) override {
+    done_ = true;
+    const ParticleSet<Dim>& set = world.set(set_);
+    const auto& at_rest = set.vector(fields::reference_position);
+    world.with_pair_precision([&](auto number) {
+      using T = decltype(number);
+      for (int which = 0; which < 2; ++which) {
+        auto& records = world.records(set_, which).template get<T>();
+        parallel_for(set.size(), [&](Index i) { records.set_position(i, at_rest[i]); });
+      }
+    });
+  }
+
+ private:
+  std::string set_;
+  bool done_ = false;
+};
+
+const RegisterEffect<SolidCorrection> registered;
+
+}  // namespace
+}  // namespace sphgeo

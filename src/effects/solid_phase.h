@@ -1,0 +1,226 @@
+#pragma once
+// What the effects of solids share: parameters of their bodies, record layout, the deformation of the places at hand.
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "effects/effect.h"
+#include "effects/soil_phase.h"
+#include "materials/hyperelastic.h"
+#include "materials/solid.h"
+#include "sph/gather.h"
+#include "sph/kernel.h"
+
+namespace sphgeo {
+
+/// Parameters of one body, SI.
+struct SolidPart {
+  const SolidMaterial* material = nullptr;  ///< null for a body that is no solid
+  const Elastic* elastic = nullptr;         ///< null for a rigid one too
+  Hyperelastic law{0, 0};
+  double wave_speed = 0;
+  double damping = 0;
+};
+
+/// Parameters of all bodies of the deck, by index.
+struct SolidParts {
+  std::vector<SolidPart> of;
+
+  template <int Dim>
+  explicit SolidParts(const World<Dim>& world) {
+    for (const Body& body : world.model().bodies) {
+      SolidPart part;
+      part.material = solid_of(world.model(), body);
+      part.elastic = dynamic_cast<const Elastic*>(part.material);
+      if (part.elastic) {
+        part.law = {part.elastic->shear_modulus(), part.elastic->lame(), part.elastic->law == "neo_hookean"};
+        part.wave_speed = part.elastic->wave_speed();
+        part.damping = part.elastic->damping;
+      }
+      of.push_back(part);
+    }
+  }
+  const SolidPart& operator[](std::int32_t part) const { return of[static_cast<std::size_t>(part)]; }
+};
+
+/// Names of the sets of solids in a world.
+template <int Dim>
+std::vector<std::string> solid_sets(const World<Dim>& world) {
+  std::vector<std::string> names;
+  for (const auto& set : world.sets())
+    if (set->phase() == "solid") names.push_back(set->name());
+  return names;
+}
+
+/// One effect of kind E for each set of solids that has elastic bodies (or `rigid` ones).
+template <class E, int Dim>
+Binding<Dim> bind_solids(const World<Dim>& world, bool rigid = false) {
+  Binding<Dim> binding(rigid ? "there are no rigid solids" : "there are no elastic solids");
+  for (std::size_t b = 0; b < world.model().bodies.size(); ++b) {
+    const SolidMaterial* material = solid_of(world.model(), world.model().bodies[b]);
+    if (!material || material->rigid() != rigid) continue;
+    const std::string set = solid_set_of(world.model(), b);
+    if (!world.find(set)) continue;
+    const auto same = [&](const auto& e) { return static_cast<const E&>(*e).set_name() == set; };
+    if (std::any_of(binding.effects.begin(), binding.effects.end(), same)) continue;
+    binding.effects.push_back(std::make_unique<E>(set));
+    binding.because = rigid ? "there are rigid solids" : "there are elastic solids";
+  }
+  return binding;
+}
+
+/// Slots of the records of solids. Record 0: reference position and w; records 1 and 2: reference position and P B.
+namespace solid_slot {
+inline constexpr int displacement = 4;  ///< w, see Deformation
+/// Number k of P . B by rows, Dim x Dim numbers, behind the position of record 1.
+template <int Dim>
+constexpr int piola(int k) { return Dim + k < 8 ? Dim + k : 8 + (Dim + k - 8); }
+}  // namespace solid_slot
+
+/// A plain matrix of the scene's dimension.
+template <int Dim>
+using Mat = Eigen::Matrix<double, Dim, Dim>;
+
+/// A tensor of the scene in three dimensions; in 2D zero across the plane.
+template <int Dim>
+Mat3 to_space_tensor(const Mat<Dim>& m) {
+  if constexpr (Dim == 3) return m;
+  Mat3 t = Mat3::Zero();
+  for (int k = 0; k < 2; ++k)
+    for (int l = 0; l < 2; ++l) t(2 * k, 2 * l) = m(k, l);
+  return t;
+}
+template <int Dim>
+Mat<Dim> to_scene_tensor(const Mat3& t) {
+  if constexpr (Dim == 3) return t;
+  Mat<Dim> m;
+  for (int k = 0; k < 2; ++k)
+    for (int l = 0; l < 2; ++l) m(k, l) = t(2 * k, 2 * l);
+  return m;
+}
+template <int Dim>
+Mat<Dim> to_matrix(const Sym3& s) {
+  Mat<Dim> m;
+  for (int k = 0; k < Dim; ++k)
+    for (int l = 0; l < Dim; ++l) m(k, l) = s[tensor_index<Dim>[k][l]];
+  return m;
+}
+
+/// A rigid motion close to that of a body: x = center + rotation (X - reference_center).
+template <int Dim>
+struct BodyFrame {
+  Mat<Dim> rotation = Mat<Dim>::Identity();
+  Vec<Dim> center = Vec<Dim>::Zero(), reference_center = Vec<Dim>::Zero();
+};
+
+/// The rotation nearest to a matrix.
+template <int Dim>
+Mat<Dim> nearest_rotation(const Mat<Dim>& a) {
+  const Eigen::JacobiSVD<Mat<Dim>> svd(a, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat<Dim> flip = Mat<Dim>::Identity();
+  flip(Dim - 1, Dim - 1) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * flip * svd.matrixV().transpose();
+}
+
+/// The deformation gradient of all particles of a set at their places. Eq. 67 is linear in the velocities, and so is
+/// its integral in the places: with B0, F_i = sum_j (x_j - x_i) (x) grad W V B0, and no error adds up. The pair sums
+/// see w = R^T (x - c) - (X - C), what a body has moved beyond its rigid motion (R, c): as F = R (I + sum (w_j - w_i)
+/// (x) grad W V B0) holds for any R and c, single precision costs digits of the strain and not of the travelled way.
+template <int Dim>
+class Deformation {
+ public:
+  explicit Deformation(std::string set) : set_(std::move(set)) {}
+
+  /// Frames of the bodies at the places at hand, from a few particles of each: near is near enough.
+  void find_frames(const World<Dim>& world);
+  const BodyFrame<Dim>& frame(std::int32_t part) const { return frames_[static_cast<std::size_t>(part)]; }
+
+  /// Writes w of particle i at the place x.
+  template <class T>
+  void pack(Records<Dim, T>& records, Index i, const Vec<Dim>& x, const Vec<Dim>& reference, std::int32_t part) const {
+    const BodyFrame<Dim>& f = frame(part);
+    const Vec<Dim> w = f.rotation.transpose() * (x - f.center) - (reference - f.reference_center);
+    for (int k = 0; k < Dim; ++k) records[i][solid_slot::displacement + k] = static_cast<T>(w[k]);
+  }
+
+  /// Calls finish(i, g): F = R (I + g) with the rotation of the body's frame. Reads what pack() wrote.
+  template <class F>
+  void gather_gradients(World<Dim>& world, F&& finish) const;
+
+ private:
+  std::string set_;
+  std::vector<BodyFrame<Dim>> frames_;
+};
+
+/// Sum of (w_j - w_i) (x) grad W at rest.
+template <int Dim>
+struct DisplacementGradient {
+  Kernel<Dim> kernel;
+
+  template <class T>
+  struct Sums {
+    T g[Dim * Dim] = {};
+  };
+  template <class T>
+  void operator()(Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T>& j, const LaneVec<Dim, T>& r, const T& r2) const {
+    const T gradient = kernel.dw_over_r(r2);
+    const LaneVec<Dim, T> dw = gradient * (j.vec(solid_slot::displacement) - i.vec(solid_slot::displacement));
+    for (int k = 0; k < Dim; ++k)
+      for (int l = 0; l < Dim; ++l) sum.g[k * Dim + l] += dw[k] * r[l];
+  }
+};
+
+template <int Dim>
+template <class F>
+void Deformation<Dim>::gather_gradients(World<Dim>& world, F&& finish) const {
+  const ParticleSet<Dim>& set = world.set(set_);
+  const auto& volume = set.scalar(fields::reference_volume);
+  const auto& correction = set.tensor(fields::reference_correction);
+  const DisplacementGradient<Dim> pair{Kernel<Dim>(set.smoothing_length())};
+  world.with_pair_precision([&](auto number) {
+    using T = decltype(number);
+    const auto& records = world.records(set_, 0).template get<T>();
+    gather<DisplacementGradient<Dim>::template Sums>(world.reference_list(set_), records, records, pair, [&](Index i, const auto& sum) {
+      Mat<Dim> g;
+      for (int k = 0; k < Dim * Dim; ++k) g(k / Dim, k % Dim) = sum.g[k];
+      finish(i, Mat<Dim>(volume[i] * g * to_matrix<Dim>(correction[i])));  // one volume for all pairs of a body
+    });
+  });
+}
+
+template <int Dim>
+void Deformation<Dim>::find_frames(const World<Dim>& world) {
+  constexpr Index samples = 64;
+  const ParticleSet<Dim>& set = world.set(set_);
+  const auto& x = set.vector(fields::position);
+  const auto& reference = set.vector(fields::reference_position);
+  const auto& part = set.tag(fields::part);
+  const std::size_t bodies = world.model().bodies.size();
+  frames_.assign(bodies, {});
+  // An odd stride: on a lattice, an even one may see one plane only.
+  const Index stride = std::max<Index>(1, set.size() / (samples * static_cast<Index>(bodies))) | 1;
+  std::vector<double> count(bodies, 0);
+  for (Index i = 0; i < set.size(); i += stride) {
+    BodyFrame<Dim>& f = frames_[static_cast<std::size_t>(part[i])];
+    f.center += x[i];
+    f.reference_center += reference[i];
+    count[static_cast<std::size_t>(part[i])] += 1;
+  }
+  std::vector<Mat<Dim>> moment(bodies, Mat<Dim>::Zero());
+  for (std::size_t b = 0; b < bodies; ++b)
+    if (count[b] > 0) {
+      frames_[b].center /= count[b];
+      frames_[b].reference_center /= count[b];
+    }
+  for (Index i = 0; i < set.size(); i += stride) {
+    const auto b = static_cast<std::size_t>(part[i]);
+    moment[b] += (x[i] - frames_[b].center) * (reference[i] - frames_[b].reference_center).transpose();
+  }
+  for (std::size_t b = 0; b < bodies; ++b)
+    if (count[b] > Dim && moment[b].allFinite()) frames_[b].rotation = nearest_rotation<Dim>(moment[b]);
+}
+
+}  // namespace sphgeo
