@@ -239,6 +239,7 @@ typename Recorder<Dim>::Totals Recorder<Dim>::totals() const {
   if (const ParticleSet<Dim>* soil = world_.find("soil")) add_soil_totals(*soil, sum);
   for (const auto& set : world_.sets())
     if (set->phase() == "solid") add_solid_totals(*set, sum);
+  sum.internal += contact_energy(WorldView<Dim>(world_));
   if (!water) return sum;
   const auto& m = water->scalar(fields::mass);
   const auto& rho = water->scalar(fields::density);

@@ -60,6 +60,7 @@ Schema<Body> Body::schema() {
       .above(0)
       .equation("section 3.5");
   s.optional("clamped", &Body::clamped, unit::none, "parts of an elastic solid that rest or move as prescribed").items(0, 1000);
+  s.optional("self_contact", &Body::self_contact, unit::none, "whether an elastic solid may fold so far that it touches itself").equation("Eq. 78");
   s.check([](Body& b, CheckContext& c) {
     if (b.level && b.pressure.word != "hydrostatic" && b.stress != "geostatic") {
       c.error("level", "'level' has no meaning unless pressure is hydrostatic",

@@ -42,6 +42,7 @@ struct Body {
   Expression saturation;                       ///< of soil, initial degree of saturation
   std::optional<double> spacing;               ///< of a solid, m; empty: the deck's resolution
   std::vector<ClampedRegion> clamped;          ///< of an elastic solid
+  bool self_contact = false;                   ///< of an elastic solid that may fold onto itself
   static Schema<Body> schema();
 };
 

@@ -110,7 +110,7 @@ inline constexpr int soil_records = Dim == 2 ? 2 : 3;
 /// Number of records that this scene needs.
 template <int Dim>
 int soil_records_used(const World<Dim>& world) {
-  return SoilParts(world).uniform && !world.find("walls") ? 2 : soil_records<Dim>;
+  return SoilParts(world).uniform && !world.find("walls") && !world.find("skin") ? 2 : soil_records<Dim>;
 }
 
 /// What a pass sees of a soil particle with all its records.

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "effects/effect.h"
+#include "effects/wall_sets.h"
 #include "effects/soil_phase.h"
 #include "effects/wall_pair.h"
 
@@ -68,7 +69,7 @@ class SoilReinitialization final : public Effect<Dim> {
   }
 
   explicit SoilReinitialization(const World<Dim>& world)
-      : has_walls_(world.find("walls") != nullptr), transport_(world.model().numerics.transport_velocity_soil),
+      : walls_(wall_sets(world)), transport_(world.model().numerics.transport_velocity_soil),
         sums_(world.model().numerics.volume_fraction_reinitialization == "summation") {}
 
   std::string acts_on() const override { return "soil"; }
@@ -82,10 +83,7 @@ class SoilReinitialization final : public Effect<Dim> {
       n.fields.push_back({"soil", &fields::position, Access::update});
       n.fields.push_back({"soil", &fields::surface, Access::write});
     }
-    if (has_walls_) {
-      n.fields.push_back({"walls", &fields::volume, Access::read});
-      n.lists.push_back({"soil", "walls"});
-    }
+    need_walls(n, "soil", walls_);
     return n;
   }
 
@@ -128,8 +126,8 @@ class SoilReinitialization final : public Effect<Dim> {
         }
       };
       gather<Pair::template Sums>(world.list("soil", "soil"), records, records, pair, keep);
-      if (has_walls_)
-        gather<Pair::template Sums>(world.list("soil", "walls"), records, world.records("walls").template get<T>(), pair, keep);
+      for (const std::string& set : walls_)
+        gather<Pair::template Sums>(world.list("soil", set), records, world.records(set).template get<T>(), pair, keep);
     });
     if (world.model().numerics.volume_fraction_reinitialization == "summation") {
       auto& n = soil_->scalar(fields::volume_fraction);
@@ -171,7 +169,8 @@ class SoilReinitialization final : public Effect<Dim> {
     world.pack_positions(*soil_);
   }
 
-  bool has_walls_, transport_, sums_;
+  std::vector<std::string> walls_;  // sets of walls
+  bool transport_, sums_;
   ParticleSet<Dim>* soil_ = nullptr;
   double lattice_ = 1;
   std::vector<Around> around_;

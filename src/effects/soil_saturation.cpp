@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "effects/effect.h"
+#include "effects/wall_sets.h"
 #include "effects/pore_water.h"
 #include "effects/wall_pair.h"
 
@@ -31,20 +32,17 @@ class SoilSaturation final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!has_pore_water(world)) return {"there is no water, or there is no soil"};
-    return {std::make_unique<SoilSaturation>(world.find("walls") != nullptr), "there are water and soil"};
+    return {std::make_unique<SoilSaturation>(wall_sets(world)), "there are water and soil"};
   }
 
-  explicit SoilSaturation(bool walls) : has_walls_(walls) {}
+  explicit SoilSaturation(std::vector<std::string> walls) : walls_(std::move(walls)) {}
 
   std::string acts_on() const override { return "soil near water"; }
   Needs needs() const override {
     Needs n{{{"water", &fields::water_fraction, Access::read}, {"water", &fields::density, Access::read}, {"water", &fields::mass, Access::read},
              {"soil", &fields::saturation, Access::write}},
             {{"soil", "water"}, {"water", "soil"}}};
-    if (has_walls_) {
-      n.fields.push_back({"walls", &fields::volume, Access::read});
-      n.lists.push_back({"soil", "walls"});
-    }
+    need_walls(n, "soil", walls_);
     return n;
   }
 
@@ -66,10 +64,10 @@ class SoilSaturation final : public Effect<Dim> {
       auto& water = pore_records<T>(world, "water");
       const auto& soil = pore_records<T>(world, "soil");
       for_targets(world.list("water", "soil"), [&](Index i) { water[i][pore_slot::other] = static_cast<T>(m[i] / (n[i] * rho[i])); });
-      if (has_walls_) {
+      for (const std::string& set : walls_) {
         using Pair = FilledShare<Dim, wall_slot::volume>;
-        gather<Pair::template Sums>(world.list("soil", "walls"), soil, world.records("walls").template get<T>(), Pair{kernel},
-                                    [&](Index k, const auto& s) { inside[static_cast<std::size_t>(k)] = std::max(0.1, 1 - s.share); });
+        gather<Pair::template Sums>(world.list("soil", set), soil, world.records(set).template get<T>(), Pair{kernel},
+                                    [&](Index k, const auto& s) { inside[static_cast<std::size_t>(k)] = std::max(0.1, inside[static_cast<std::size_t>(k)] - s.share); });
       }
       using Pair = FilledShare<Dim, pore_slot::other>;
       gather<Pair::template Sums>(world.list("soil", "water"), soil, water, Pair{kernel},
@@ -78,7 +76,7 @@ class SoilSaturation final : public Effect<Dim> {
   }
 
  private:
-  bool has_walls_;
+  std::vector<std::string> walls_;  // sets of walls
   ParticleSet<Dim>* water_ = nullptr;
   ParticleSet<Dim>* soil_ = nullptr;
 };

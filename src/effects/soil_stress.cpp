@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "effects/effect.h"
+#include "effects/wall_sets.h"
 #include "effects/soil_wall_pair.h"
 
 namespace sphgeo {
@@ -70,10 +71,10 @@ class SoilStress final : public Effect<Dim> {
   }
 
   explicit SoilStress(const World<Dim>& world)
-      : has_walls_(world.find("walls") != nullptr), wetted_(world.set("soil").has(fields::saturation)),
+      : walls_(wall_sets(world)), wetted_(world.set("soil").has(fields::saturation)),
         crowded_(SoilParts(world).deformable && world.model().numerics.volume_fraction_reinitialization == "summation") {}
 
-  std::string acts_on() const override { return has_walls_ ? "soil, also near walls" : "soil"; }
+  std::string acts_on() const override { return !walls_.empty() ? "soil, also near walls" : "soil"; }
   Needs needs() const override {
     Needs n{{{"soil", &fields::volume, Access::read}, {"soil", &fields::volume_fraction, Access::read},
              {"soil", &fields::velocity, Access::read},
@@ -85,10 +86,7 @@ class SoilStress final : public Effect<Dim> {
             {{"soil", "soil"}}};
     if (crowded_) n.fields.push_back({"soil", &fields::crowding, Access::read});
     if (wetted_) n.fields.push_back({"soil", &fields::saturation, Access::read});
-    if (has_walls_) {
-      n.fields.push_back({"walls", &fields::volume, Access::read});
-      n.lists.push_back({"soil", "walls"});
-    }
+    need_walls(n, "soil", walls_);
     return n;
   }
   void prepare(World<Dim>& world) override { soil_ = &world.set("soil"); }
@@ -107,16 +105,15 @@ class SoilStress final : public Effect<Dim> {
     const SoilParts parts(world);
     const auto records = view(world.records("soil", 0).template get<T>());
     const NeighborList& soil_list = world.list("soil", "soil");
-    const NeighborList* wall_list = has_walls_ ? &world.list("soil", "walls") : nullptr;
     parallel_blocks(soil_->size(), block_size, [&](Index first, Index end, Index b) {
       std::array<Sums, block_size> sums{};
       const auto at = [&](Index i) -> Sums& { return sums[static_cast<std::size_t>(i - first)]; };
       gather_block<GradientSums<Dim>::template Sums>(soil_list, b, records, records, GradientPair<Dim>{kernel},
                                                      [&](Index i, const Sums& s) { at(i) = s; });
-      if (wall_list)
+      for (const std::string& set : walls_)
         gather_block<GradientSums<Dim>::template Sums>(
-            *wall_list, b, records,
-            with(world.records("walls", 0).template get<T>(), world.records("walls", 1).template get<T>()),
+            world.list("soil", set), b, records,
+            with(world.records(set, 0).template get<T>(), world.records(set, 1).template get<T>()),
             WallGradientPair<Dim>{kernel}, [&](Index i, const Sums& s) { add(at(i), s); });
       finish_block(world, parts, sums.data(), first, end - first);
     });
@@ -220,7 +217,8 @@ class SoilStress final : public Effect<Dim> {
   // Of the sum over neighbors, by disorder alone.
   static constexpr double crowding_margin = 0.05;
 
-  bool has_walls_, wetted_, crowded_;
+  std::vector<std::string> walls_;  // sets of walls
+  bool wetted_, crowded_;
   ParticleSet<Dim>* soil_ = nullptr;
 };
 

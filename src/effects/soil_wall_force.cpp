@@ -1,5 +1,6 @@
 #include "effects/effect.h"
 #include "effects/soil_wall_pair.h"
+#include "effects/wall_sets.h"
 
 namespace sphgeo {
 namespace {
@@ -27,17 +28,18 @@ class SoilWallForce final : public Effect<Dim> {
     return {"soil_wall_force", Stage::force, "Eqs. 69, 95", "stress and dissipation (one-sided Riemann) of walls on the soil", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    if (!world.find("soil") || !world.find("walls")) return {"there is no soil, or there are no walls"};
-    if (!SoilParts(world).deformable) return {"no skeleton is deformable"};
-    return {std::make_unique<SoilWallForce>(), "there are soil and walls"};
+    if (world.find("soil") && !SoilParts(world).deformable) return {"no skeleton is deformable"};
+    return bind_walls<SoilWallForce>(world, "soil");
   }
 
-  std::string acts_on() const override { return "soil near walls"; }
+  SoilWallForce(const World<Dim>&, std::string walls) : walls_(std::move(walls)) {}
+
+  std::string acts_on() const override { return near_walls("soil", walls_); }
   Needs needs() const override {
-    return {{{"soil", &fields::volume, Access::read}, {"soil", &fields::stress, Access::read},
-             {"soil", &fields::mass, Access::read},
-             {"soil", &fields::acceleration_sum, Access::add}, {"walls", &fields::volume, Access::read}},
-            {{"soil", "walls"}}};
+    Needs n{{{"soil", &fields::volume, Access::read}, {"soil", &fields::stress, Access::read},
+             {"soil", &fields::mass, Access::read}, {"soil", &fields::acceleration_sum, Access::add}}, {}};
+    need_walls(n, "soil", {walls_});
+    return n;
   }
   void prepare(World<Dim>& world) override {
     soil_ = &world.set("soil");
@@ -48,17 +50,18 @@ class SoilWallForce final : public Effect<Dim> {
     const auto& m = soil_->scalar(fields::mass);
     const auto& volume = soil_->scalar(fields::volume);
     auto& sum_of_forces = soil_->vector(fields::acceleration_sum);
-    const NeighborList& list = world.list("soil", "walls");
+    const NeighborList& list = world.list("soil", walls_);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       gather<WallForceOnSoil<Dim>::template Sums>(
           list, stress_records<T, soil_records<Dim>>(world),
-          with(world.records("walls", 0).template get<T>(), world.records("walls", 1).template get<T>()), pair,
+          with(world.records(walls_, 0).template get<T>(), world.records(walls_, 1).template get<T>()), pair,
           [&](Index i, const auto& sum) { sum_of_forces[i] += to_vec(sum.force) * (volume[i] / m[i]); });
     });
   }
 
  private:
+  std::string walls_;
   ParticleSet<Dim>* soil_ = nullptr;
 };
 

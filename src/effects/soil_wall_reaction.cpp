@@ -4,22 +4,6 @@
 namespace sphgeo {
 namespace {
 
-/// The reaction: the same pair function, seen from the wall.
-template <int Dim>
-struct SoilForceOnWall {
-  SoilWallPair<Dim> wall;
-
-  template <class T>
-  struct Sums {
-    LaneVec<Dim, T> force{};
-  };
-  template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T, 2>& i, const SoilRecord<Dim, T>& j,
-                  const LaneVec<Dim, T>& r, const T& r2) const {
-    sum.force -= j[soil_slot::volume] * wall.force(j, i, T(-1) * r, r2);
-  }
-};
-
 /// Force of the soil on every wall particle (Eq. 70).
 template <int Dim>
 class SoilWallReaction final : public Effect<Dim> {

@@ -1,6 +1,7 @@
 #pragma once
 // What the effects of solids share: parameters of their bodies, record layout, the deformation of the places at hand.
 
+#include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>

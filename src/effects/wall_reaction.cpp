@@ -1,25 +1,8 @@
 #include "effects/effect.h"
-#include "effects/wall_pair.h"
+#include "effects/water_pull.h"
 
 namespace sphgeo {
 namespace {
-
-/// The reaction: the same pair function, seen from the wall.
-template <int Dim>
-struct WaterForceOnWall {
-  WallPair<Dim> wall;
-  static constexpr int scale = 13;  ///< slot of what gradient_scale() makes of the force, squared
-
-  template <class T>
-  struct Sums {
-    LaneVec<Dim, T> force{};
-  };
-  template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T, 2>& i, const Record<Dim, T, 2>& j,
-                  const LaneVec<Dim, T>& r, const T& r2) const {
-    sum.force -= (j[water_slot::volume] * j[scale]) * wall.force(j, i, T(-1) * r, r2);
-  }
-};
 
 /// Force of the water on every wall particle (Eqs. 76, 77).
 template <int Dim>
@@ -38,7 +21,7 @@ class WallReaction final : public Effect<Dim> {
     return {{{"water", &fields::pressure, Access::read}, {"water", &fields::volume, Access::read},
              {"water", &fields::acceleration, Access::read}, {"water", &fields::density, Access::read},
              {"walls", &fields::wall_force, Access::write}},
-            {{"walls", "water"}}};
+            {{"walls", "water"}, {"water", "walls"}}};
   }
   void prepare(World<Dim>& world) override {
     walls_ = &world.set("walls");
@@ -49,22 +32,14 @@ class WallReaction final : public Effect<Dim> {
   void apply(World<Dim>& world) override {
     const WaterForceOnWall<Dim> pair{WallPair<Dim>(WaterConstants::of(world), water_->smoothing_length(), water_->spacing())};
     auto& force = walls_->vector(fields::wall_force);
-    const auto& a = water_->vector(fields::acceleration);
-    const auto& rho = water_->scalar(fields::density);
-    const auto& x = water_->vector(fields::position);
     parallel_for(walls_->size(), [&](Index i) { force[i].setZero(); });
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& second = world.records("water", 1).template get<T>();
       const Field<double>* scale = gradient_scale(world);
-      const Field<Vec<Dim>>* drag = water_->has(fields::drag_acceleration) ? &water_->vector(fields::drag_acceleration) : nullptr;
+      pack_water_pull(world, world.list("water", "walls"), second);
       parallel_for(water_->size(), [&](Index i) {
-        T* slot = second[i] - record_size;
-        Vec<Dim> pull = world.pull(x[i]) - a[i];
-        if (drag) pull += (*drag)[i];
-        for (int k = 0; k < Dim; ++k) slot[water_slot::pull + k] = static_cast<T>(pull[k]);
-        slot[water_slot::density] = static_cast<T>(rho[i]);
-        slot[pair.scale] = static_cast<T>(scale ? (*scale)[i] * (*scale)[i] : 1.0);
+        second[i][pair.scale - record_size] = static_cast<T>(scale ? (*scale)[i] * (*scale)[i] : 1.0);
       });
       gather<WaterForceOnWall<Dim>::template Sums>(
           world.list("walls", "water"),

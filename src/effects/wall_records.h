@@ -10,11 +10,12 @@
 
 namespace sphgeo {
 
-/// Writes both records of all wall particles from their fields (not the positions).
+/// Writes both records of all particles of "walls", or of the "skin" of solids, from their fields (not the positions).
 template <int Dim>
-void pack_walls(World<Dim>& world) {
-  const ParticleSet<Dim>& walls = world.set("walls");
+void pack_walls(World<Dim>& world, const std::string& name = "walls") {
+  const ParticleSet<Dim>& walls = world.set(name);
   const double volume = std::pow(walls.spacing(), Dim);
+  const Field<double>* own_volume = walls.has(fields::reference_volume) ? &walls.scalar(fields::reference_volume) : nullptr;
   const auto& v = walls.vector(fields::velocity);
   const auto* a = walls.has(fields::acceleration) ? &walls.vector(fields::acceleration) : nullptr;  // null: at rest
   const auto& n = walls.vector(fields::normal);
@@ -22,12 +23,12 @@ void pack_walls(World<Dim>& world) {
   const auto& x = walls.vector(fields::position);
   world.with_pair_precision([&](auto number) {
     using T = decltype(number);
-    auto& first = world.records("walls", 0).template get<T>();
-    auto& second = world.records("walls", 1).template get<T>();
+    auto& first = world.records(name, 0).template get<T>();
+    auto& second = world.records(name, 1).template get<T>();
     parallel_for(walls.size(), [&](Index i) {
       T* one = first[i];
       T* two = second[i] - record_size;  // slots of the second record count on from the first
-      one[wall_slot::volume] = static_cast<T>(volume);
+      one[wall_slot::volume] = static_cast<T>(own_volume ? (*own_volume)[i] : volume);
       one[wall_slot::no_slip] = static_cast<T>(no_slip[i]);
       const Vec<Dim> g = world.pull(x[i]);
       two[wall_slot::push] = static_cast<T>(std::max(0.0, (a ? Vec<Dim>((*a)[i] - g) : Vec<Dim>(-g)).dot(n[i])));

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "effects/effect.h"
+#include "effects/wall_sets.h"
 #include "effects/pore_water.h"
 #include "effects/wall_pair.h"
 
@@ -72,7 +73,7 @@ class WaterFraction final : public Effect<Dim> {
     return {std::make_unique<WaterFraction>(world), "there are water and soil"};
   }
 
-  explicit WaterFraction(const World<Dim>& world) : has_walls_(world.find("walls") != nullptr), deformable_(SoilParts(world).deformable) {}
+  explicit WaterFraction(const World<Dim>& world) : walls_(wall_sets(world)), deformable_(SoilParts(world).deformable) {}
 
   std::string acts_on() const override { return "water near soil"; }
   // The places are those of before the transport shift, whose target volumes need this fraction: they are not named here.
@@ -81,10 +82,7 @@ class WaterFraction final : public Effect<Dim> {
              {"water", &fields::drag_linear, Access::write}, {"water", &fields::drag_quadratic, Access::write},
              {"soil", &fields::volume_fraction, Access::read}, {"soil", &fields::mass, Access::read}},
             {{"water", "soil"}}};
-    if (has_walls_) {
-      n.fields.push_back({"walls", &fields::volume, Access::read});
-      n.lists.push_back({"water", "walls"});
-    }
+    need_walls(n, "water", walls_);
     if (deformable_) {
       n.fields.push_back({"water", &fields::inverse_soil_mass, Access::write});
       n.lists.push_back({"soil", "water"});
@@ -172,7 +170,6 @@ class WaterFraction final : public Effect<Dim> {
   void sum_soil(World<Dim>& world) {
     const Kernel<Dim> kernel(water_->smoothing_length());
     const NeighborList& list = world.list("water", "soil");
-    const NeighborList* walls = has_walls_ ? &world.list("water", "walls") : nullptr;
     auto& water = pore_records<T>(world, "water");
     const auto& soil = pore_records<T>(world, "soil");
     auto& n = water_->scalar(fields::water_fraction);
@@ -188,9 +185,9 @@ class WaterFraction final : public Effect<Dim> {
       // Water that no soil is near pays nothing for its walls.
       if (list.blocks()[static_cast<std::size_t>(b)].size() == 0) return;
       std::array<double, block_size> share{};
-      if (walls)
-        gather_block<WallShare<Dim>::template Sums>(*walls, b, world.records("water").template get<T>(), world.records("walls").template get<T>(),
-                                                    WallShare<Dim>{kernel}, [&](Index i, const auto& s) { share[static_cast<std::size_t>(i - b * block_size)] = s.share; });
+      for (const std::string& set : walls_)
+        gather_block<WallShare<Dim>::template Sums>(world.list("water", set), b, world.records("water").template get<T>(), world.records(set).template get<T>(),
+                                                    WallShare<Dim>{kernel}, [&](Index i, const auto& s) { share[static_cast<std::size_t>(i - b * block_size)] += s.share; });
       gather_block<SoilAround<Dim>::template Sums>(list, b, water, soil, SoilAround<Dim>{kernel}, [&](Index i, const auto& s) {
         const double inside = std::max(0.1, 1 - share[static_cast<std::size_t>(i - b * block_size)]);
         const double free = 1 - s.grains / inside;
@@ -228,7 +225,8 @@ class WaterFraction final : public Effect<Dim> {
     });
   }
 
-  bool has_walls_, deformable_;
+  std::vector<std::string> walls_;  // sets of walls
+  bool deformable_;
   double floor_ = 0;  // least n^w
   ParticleSet<Dim>* water_ = nullptr;
   ParticleSet<Dim>* soil_ = nullptr;

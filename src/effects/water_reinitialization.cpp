@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "effects/effect.h"
+#include "effects/wall_sets.h"
 #include "effects/lattice_sums.h"
 #include "effects/water_phase.h"
 
@@ -122,7 +123,7 @@ class WaterReinitialization final : public Effect<Dim> {
   }
 
   explicit WaterReinitialization(const World<Dim>& world)
-      : has_walls_(world.find("walls") != nullptr), porous_(volume_follows_porosity(world)) {
+      : walls_(wall_sets(world)), porous_(volume_follows_porosity(world)) {
     need_volume_share(world, volume_);
     if (!porous_) return;
     volume_.fields.push_back({"water", &fields::gradient_scale, Access::update});
@@ -139,10 +140,7 @@ class WaterReinitialization final : public Effect<Dim> {
              {"water", &fields::surface, Access::write}},
             {{"water", "water"}}};
     n.fields.insert(n.fields.end(), volume_.fields.begin(), volume_.fields.end());
-    if (has_walls_) {
-      n.fields.push_back({"walls", &fields::volume, Access::read});
-      n.lists.push_back({"water", "walls"});
-    }
+    need_walls(n, "water", walls_);
     return n;
   }
 
@@ -198,8 +196,6 @@ class WaterReinitialization final : public Effect<Dim> {
           [&](Index i, const auto& s) { sums[static_cast<std::size_t>(i - b * block_size)].add(s); });
     };
     const NeighborList& water = world.list("water", "water");
-    const NeighborList* walls = has_walls_ ? &world.list("water", "walls") : nullptr;
-    const Records<Dim, T>* wall_records = has_walls_ ? &world.records("walls").template get<T>() : nullptr;
     Records<Dim, T>* second = transport ? &world.records("water", 1).template get<T>() : nullptr;
     const double self = pair.kernel.w(0.0), volume_at_dp = std::pow(water_->spacing(), Dim);
     auto& surface = water_->tag(fields::surface);
@@ -209,7 +205,7 @@ class WaterReinitialization final : public Effect<Dim> {
       if constexpr (Porous)  // as a water particle like itself would
         for (Index i = begin; i < end; ++i)
           sums[static_cast<std::size_t>(i - begin)].gradient /= (*scale)[i] > 0 ? (*scale)[i] : 1;
-      if (walls) walk(*walls, *wall_records, wall_pair, b, sums);
+      for (const std::string& set : walls_) walk(world.list("water", set), world.records(set).template get<T>(), wall_pair, b, sums);
       for (Index i = begin; i < end; ++i) {
         const Arrangement<Dim>& s = sums[static_cast<std::size_t>(i - begin)];
         // The divergence of position is Dim in the bulk; three quarters of it tell the surface.
@@ -340,7 +336,8 @@ class WaterReinitialization final : public Effect<Dim> {
     return (s.moment.inverse() * s.gradient).normalized();
   }
 
-  bool has_walls_, porous_;
+  std::vector<std::string> walls_;  // sets of walls
+  bool porous_;
   Needs volume_;  // what the target volume needs beside the mass
   std::unique_ptr<SpreadLattice<Dim>> spread_;
   ParticleSet<Dim>* water_ = nullptr;

@@ -1,5 +1,6 @@
 #include "effects/effect.h"
 #include "effects/wall_pair.h"
+#include "effects/wall_sets.h"
 
 namespace sphgeo {
 namespace {
@@ -27,17 +28,15 @@ class WaterWallContinuity final : public Effect<Dim> {
     return {"water_wall_continuity", Stage::rate, "Eqs. 58, 95", "divergence and density dissipation against walls", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    if (!world.find("water") || !world.find("walls")) return {"there is no water, or there are no walls"};
-    return {std::make_unique<WaterWallContinuity>(volume_follows_porosity(world)), "there are water and walls"};
+    return bind_walls<WaterWallContinuity>(world, "water");
   }
 
-  explicit WaterWallContinuity(bool porous) : porous_(porous) {}
+  WaterWallContinuity(const World<Dim>& world, std::string walls) : walls_(std::move(walls)), porous_(volume_follows_porosity(world)) {}
 
-  std::string acts_on() const override { return "water near walls"; }
+  std::string acts_on() const override { return near_walls("water", walls_); }
   Needs needs() const override {
-    Needs n{{{"water", &fields::density, Access::read}, {"water", &fields::density_rate, Access::add},
-             {"walls", &fields::volume, Access::read}},
-            {{"water", "walls"}}};
+    Needs n{{{"water", &fields::density, Access::read}, {"water", &fields::density_rate, Access::add}}, {}};
+    need_walls(n, "water", {walls_});
     if (porous_) {
       n.fields.push_back({"water", &fields::water_fraction, Access::read});
       n.fields.push_back({"water", &fields::soil_velocity, Access::read});  // the records hold the mixture's
@@ -55,13 +54,14 @@ class WaterWallContinuity final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       gather<WallDivergence<Dim>::template Sums>(
-          world.list("water", "walls"), world.records("water").template get<T>(),
-          with(world.records("walls", 0).template get<T>(), world.records("walls", 1).template get<T>()), pair,
+          world.list("water", walls_), world.records("water").template get<T>(),
+          with(world.records(walls_, 0).template get<T>(), world.records(walls_, 1).template get<T>()), pair,
           [&](Index i, const auto& sum) { rate[i] += rho[i] * (n ? (*scale)[i] * (*scale)[i] * sum.divergence / (*n)[i] : sum.divergence); });
     });
   }
 
  private:
+  std::string walls_;
   bool porous_;
   ParticleSet<Dim>* water_ = nullptr;
 };

@@ -1,5 +1,6 @@
 #include "effects/effect.h"
-#include "effects/wall_pair.h"
+#include "effects/wall_sets.h"
+#include "effects/water_pull.h"
 
 namespace sphgeo {
 namespace {
@@ -44,20 +45,19 @@ class WaterWallForce final : public Effect<Dim> {
     return {"water_wall_force", Stage::force, "Eqs. 73, 74", "pressure (one-sided Riemann) and friction of walls on the water", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    if (!world.find("water") || !world.find("walls")) return {"there is no water, or there are no walls"};
-    return {std::make_unique<WaterWallForce>(world), "there are water and walls"};
+    return bind_walls<WaterWallForce>(world, "water");
   }
 
-  explicit WaterWallForce(const World<Dim>& world) : porous_(world.find("soil") != nullptr) {
+  WaterWallForce(const World<Dim>& world, std::string walls) : walls_(std::move(walls)), porous_(world.find("soil") != nullptr) {
     if (porous_) need_volume_share(world, volume_);
   }
 
-  std::string acts_on() const override { return "water near walls"; }
+  std::string acts_on() const override { return near_walls("water", walls_); }
   Needs needs() const override {
     Needs n{{{"water", &fields::density, Access::read}, {"water", &fields::pressure, Access::read},
              {"water", &fields::acceleration, Access::read},
-             {"water", &fields::acceleration_sum, Access::add}, {"walls", &fields::volume, Access::read}},
-            {{"water", "walls"}}};
+             {"water", &fields::acceleration_sum, Access::add}}, {}};
+    need_walls(n, "water", {walls_});
     n.fields.insert(n.fields.end(), volume_.fields.begin(), volume_.fields.end());
     if (porous_) n.fields.push_back({"water", &fields::pressure_force, Access::add});
     return n;
@@ -83,13 +83,13 @@ class WaterWallForce final : public Effect<Dim> {
     Field<Vec<Dim>>* pressure_force = porous ? &water_->vector(fields::pressure_force) : nullptr;
     const auto& rho = water_->scalar(fields::density);
     auto& sum_of_forces = water_->vector(fields::acceleration_sum);
-    const NeighborList& list = world.list("water", "walls");
+    const NeighborList& list = world.list("water", walls_);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      pack_pull(world, list, world.records("water", 1).template get<T>());
+      pack_water_pull(world, list, world.records("water", 1).template get<T>());
       gather<Pair::template Sums>(
           list, with(world.records("water", 0).template get<T>(), world.records("water", 1).template get<T>()),
-          with(world.records("walls", 0).template get<T>(), world.records("walls", 1).template get<T>()), pair,
+          with(world.records(walls_, 0).template get<T>(), world.records(walls_, 1).template get<T>()), pair,
           [&](Index i, const auto& sum) {
             if constexpr (porous) {
               Vec<Dim> pressure = to_vec(sum.pressure);
@@ -103,26 +103,7 @@ class WaterWallForce final : public Effect<Dim> {
     });
   }
 
-  // g - dv/dt and the density, of the water that a wall can reach; with drag, grad p / rho = g - dv/dt + drag. The drag is that of the
-  // last step, too: this step's comes after all other forces, so it is not named among the needs.
-  template <class T>
-  void pack_pull(const World<Dim>& world, const NeighborList& list, Records<Dim, T>& records) {
-    const auto& x = water_->vector(fields::position);
-    const auto& a = water_->vector(fields::acceleration);
-    const auto& rho = water_->scalar(fields::density);
-    const Field<Vec<Dim>>* drag = water_->has(fields::drag_acceleration) ? &water_->vector(fields::drag_acceleration) : nullptr;
-    const auto blocks = list.blocks();
-    parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
-      for (const std::uint32_t i : blocks[static_cast<std::size_t>(b)].targets) {
-        T* slot = records[i] - record_size;
-        Vec<Dim> pull = world.pull(x[i]) - a[i];
-        if (drag) pull += (*drag)[i];
-        for (int k = 0; k < Dim; ++k) slot[water_slot::pull + k] = static_cast<T>(pull[k]);
-        slot[water_slot::density] = static_cast<T>(rho[i]);
-      }
-    });
-  }
-
+  std::string walls_;
   bool porous_;
   Needs volume_;  // what the volume needs beside mass and density
   ParticleSet<Dim>* water_ = nullptr;

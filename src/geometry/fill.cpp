@@ -199,6 +199,21 @@ std::vector<Vec3> fill_lattice(const Shape& shape, double dp, int dim, const Aab
   });
 }
 
+double cut_volume(const Shape& shape, double dp, int dim) {
+  const Aabb box = in_scene(shape.box().grown(dp), dim);
+  refuse_unbounded(box);
+  if (const double lattice = lattice_points(box, dp, dim); !(lattice <= largest_lattice)) refuse_absurd(lattice);
+  const Vec3 origin = default_origin(shape, {}) - Vec3::Constant(dp);
+  const double reach = 0.5 * dp;
+  double cells = 0;
+  for (const Vec3& p : collect(box, origin, dp, dim, [&](const Vec3& at) {
+         const double d = distance_bound(shape, at);
+         return Verdict{d < reach, std::max(std::abs(d) - reach, 0.0)};
+       }))
+    cells += std::clamp(0.5 - shape.signed_distance(p) / dp, 0.0, 1.0);
+  return cells * std::pow(dp, dim);
+}
+
 std::vector<Vec3> fill_layers(const Shape& shape, double dp, int dim, double thickness,
                               LayerSide side, const Aabb& clip) {
   const bool outside = side == LayerSide::outside;

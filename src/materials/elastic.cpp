@@ -5,11 +5,10 @@ namespace sphgeo {
 
 Schema<Elastic> Elastic::schema() {
   Schema<Elastic> s("elastic", "hyperelastic solid in total-Lagrangian form (Eqs. 35 to 40)");
-  s.required("density", &Elastic::density, unit::density, "density rho_0 at rest").above(0).equation("Eq. 34");
+  declare_solid_keys(s);
   s.required("youngs_modulus", &Elastic::youngs_modulus, unit::pressure, "Young's modulus E").above(0);
   s.optional("poisson_ratio", &Elastic::poisson_ratio, unit::none, "Poisson's ratio nu").above(-1).below(0.5);
   s.optional("law", &Elastic::law, unit::none, "strain energy").choices({"neo_hookean", "saint_venant_kirchhoff"}).equation("Eqs. 38 to 40");
-  s.optional("slip", &Elastic::slip, unit::none, "whether water and soil stick to its surface or slide along it").choices({"no_slip", "free_slip"});
   s.optional("damping", &Elastic::damping, unit::rate, "damping by mass, -damping v, to bring a body to rest; 0 for everything that is to move freely").at_least(0);
   return s;
 }

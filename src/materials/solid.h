@@ -13,6 +13,8 @@ namespace sphgeo {
 struct SolidMaterial : MaterialSpec {
   double density = 0;           ///< rho_0, kg/m3
   std::string slip = "no_slip"; ///< no_slip | free_slip: water and soil on its surface
+  double friction = 0;          ///< Coulomb coefficient of contacts; of two solids the smaller counts
+  double contact_damping = 0;   ///< of approach in a contact, in parts of rho_0 c_0; of two solids the mean
 
   std::string phase() const final { return "solid"; }
   virtual bool rigid() const = 0;
@@ -45,6 +47,16 @@ struct Rigid final : SolidMaterial {
   double contact_stiffness() const override { return stiffness; }
   static Schema<Rigid> schema();
 };
+
+/// Declares the keys that all solids share.
+template <class S>
+void declare_solid_keys(Schema<S>& s) {
+  s.required("density", &S::density, unit::density, "density rho_0 at rest").above(0).equation("Eq. 34");
+  s.optional("slip", &S::slip, unit::none, "whether water and soil stick to its surface or slide along it").choices({"no_slip", "free_slip"});
+  s.optional("friction", &S::friction, unit::none, "Coulomb friction of its contacts with walls and other solids; of two solids the smaller counts").at_least(0);
+  s.optional("contact_damping", &S::contact_damping, unit::none,
+             "resistance to approach in a contact, in parts of rho_0 c_0; of two solids the mean counts").at_least(0).at_most(2);
+}
 
 /// The material of a body, if that is a solid.
 inline const SolidMaterial* solid_of(const Model& model, const Body& body) {

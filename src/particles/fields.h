@@ -67,6 +67,12 @@ inline constexpr FieldSpec clamp{"clamp", tag, reference, unit::none, "index of 
 inline constexpr FieldSpec reference_correction{"reference_correction", tensor, derived, unit::none,
                                                 "inverse moment of the kernel gradient at rest, Eq. 66: xx, yy, zz, xy, yz, xz"};
 inline constexpr FieldSpec mean_velocity{"mean_velocity", vector, state, unit::speed, "velocity, averaged over the steps of solids in the last acoustic step"};
+inline constexpr FieldSpec source{"source", tag, reference, unit::none, "id of the particle of a solid that a particle of the skin follows"};
+inline constexpr FieldSpec source_set{"source_set", tag, reference, unit::none, "number of that solid's set"};
+inline constexpr FieldSpec water_force{"water_force", vector, derived, unit::force, "force of water on a particle of the skin"};
+inline constexpr FieldSpec soil_force{"soil_force", vector, derived, unit::force, "force of soil on a particle of the skin"};
+inline constexpr FieldSpec contact_force{"contact_force", vector, derived, unit::force, "force of other solids and of walls on a particle of the skin"};
+inline constexpr FieldSpec contact_energy{"contact_energy", scalar, derived, unit::energy, "energy stored in the contacts of a particle of the skin; J per metre of depth in 2D"};
 inline constexpr FieldSpec fluid_force{"fluid_force", vector, derived, unit::force, "force of water and soil on a particle of a solid"};
 inline constexpr FieldSpec cauchy_stress{"cauchy_stress", tensor, derived, unit::pressure,
                                          "stress of a solid, tension positive: xx, yy, zz, xy, yz, xz"};
@@ -83,6 +89,7 @@ inline constexpr const FieldSpec* all[] = {&id, &part, &position, &velocity, &ac
                                            &water_fraction, &soil_sum, &inverse_soil_mass, &drag_linear, &drag_quadratic,
                                            &pressure_force, &soil_velocity, &gradient_scale, &drag_acceleration,
                                            &reference_volume, &clamp, &reference_correction, &mean_velocity, &fluid_force,
+                                           &source, &source_set, &water_force, &soil_force, &contact_force, &contact_energy,
                                            &cauchy_stress, &von_mises, &strain_energy};
 
 }  // namespace sphgeo::fields

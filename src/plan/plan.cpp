@@ -56,7 +56,8 @@ void Plan<Dim>::bind(const std::vector<Wish>& wishes) {
     Binding<Dim> binding = entry.template bind<Dim>(world_);
     if (binding.effects.empty()) unused_.push_back({entry.info.name, binding.because});
     for (auto& effect : binding.effects) {
-      PlannedEffect<Dim> planned{entry.info, std::move(effect), {}, binding.because, 0, 0};
+      PlannedEffect<Dim> planned{entry.info, std::move(effect), {}, binding.because, entry.info.name, 0, 0};
+      if (binding.effects.size() > 1) planned.label += " (" + planned.effect->acts_on() + ")";
       planned.needs = planned.effect->needs();
       (entry.info.supporting ? supporting : effects_).push_back(std::move(planned));
     }
@@ -185,8 +186,8 @@ std::vector<FieldBound> Plan<Dim>::bounds() const {
 template <int Dim>
 void Plan<Dim>::save(StateSink& sink) const {
   for (const auto& e : effects_) {
-    sink.put_count("effects/" + e.info.name + "/calls", e.calls);
-    sink.put_number("effects/" + e.info.name + "/seconds", e.seconds);
+    sink.put_count("effects/" + e.label + "/calls", e.calls);
+    sink.put_number("effects/" + e.label + "/seconds", e.seconds);
   }
 }
 
@@ -194,9 +195,9 @@ template <int Dim>
 void Plan<Dim>::load(const StateSource& source) {
   for (auto& e : effects_) {
     // An observer may be new: what is asked of a run may change when it goes on.
-    if (!source.has("effects/" + e.info.name + "/calls")) continue;
-    e.calls = source.count("effects/" + e.info.name + "/calls");
-    e.seconds = source.number("effects/" + e.info.name + "/seconds");
+    if (!source.has("effects/" + e.label + "/calls")) continue;
+    e.calls = source.count("effects/" + e.label + "/calls");
+    e.seconds = source.number("effects/" + e.label + "/seconds");
   }
 }
 

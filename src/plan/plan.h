@@ -24,6 +24,7 @@ struct PlannedEffect {
   std::unique_ptr<Effect<Dim>> effect;
   Needs needs;
   std::string because;
+  std::string label;  ///< the name, with what it acts on where several bear it: for time tables and checkpoints
   long calls = 0;
   double seconds = 0;
 };

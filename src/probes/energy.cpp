@@ -27,6 +27,7 @@ struct EnergyProbe final : Probe {
                                 {"potential", unit, "potential energy in the deck's gravity, zero at the origin"},
                                 {"internal", unit, set == "water" ? "energy of compression, zero at rho0" : "elastic energy"},
                                 {"total", unit, "their sum"}};
+    if (set == "solids") columns.push_back({"contact", unit, "energy stored in contacts, part of the internal energy"});
     if (set == "soil") columns.push_back({"dissipated", unit, "energy dissipated by plastic flow so far"});
     return columns;
   }
@@ -50,6 +51,8 @@ struct EnergyProbe final : Probe {
     if (set == "solids") {
       const std::int32_t one = body.empty() ? -1 : body_index(scene.model(), body);
       for (std::size_t k = 0; scene.has_set(solid_set_name(k)); ++k) e = e + solid_energies(scene, solid_set_name(k), one);
+      out[4] = contact_energy(scene, one);
+      e.internal += *out[4];
     }
     if (set == "soil") out[4] = dissipated_energy(scene);
     out[0] = e.kinetic;

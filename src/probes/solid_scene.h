@@ -33,6 +33,14 @@ inline void inspect_body(const Model& model, const std::string& name, const char
           "name a body whose material is elastic or rigid");
 }
 
+/// Energy that is stored in the contacts of solids, J; of one body's side alone, or of all.
+inline double contact_energy(const SceneView& scene, std::int32_t body = -1) {
+  if (!scene.has_field("skin", fields::contact_energy)) return 0;
+  const auto energy = scene.scalar("skin", fields::contact_energy);
+  const auto part = scene.tag("skin", fields::part);
+  return ordered_sum(scene.size("skin"), [&](Index i) { return body < 0 || part(i) == body ? energy(i) : 0.0; });
+}
+
 /// Energies of the solids of a set: `internal` is the strain energy. `body`: of that one alone, or -1.
 inline Energies solid_energies(const SceneView& scene, const std::string& set, std::int32_t body = -1) {
   Energies e;

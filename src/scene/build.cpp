@@ -13,6 +13,7 @@
 #include "relax/pore_water.h"
 #include "scene/join_walls.h"
 #include "scene/soil.h"
+#include "scene/skin.h"
 #include "scene/solid.h"
 
 namespace sphgeo {
@@ -241,6 +242,7 @@ Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling) 
   add_soil(scene, model, filling, found);
   add_solids(scene, model, filling, found);
   add_walls(scene, model, filling, found);
+  add_skin(scene, model, filling);
   if (filling != Filling::none) set_domain(*scene.world, model);
   return scene;
 }

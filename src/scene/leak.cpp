@@ -39,7 +39,7 @@ template <int Dim>
 Parts parts_of(const Scene<Dim>& scene, const Model& model, int up, bool up_is_high) {
   Parts parts;
   for (const auto& s : scene.world->sets()) {
-    if (s->phase() != "wall" && s->phase() != "solid") continue;
+    if ((s->phase() != "wall" && s->phase() != "solid") || s->name() == "skin") continue;  // the skin is on its solids
     const auto& x = s->vector(fields::position);
     const auto& part = s->tag(fields::part);
     for (Index i = 0; i < s->size(); ++i) parts.solids.push_back({to_space<Dim>(x[i]), s->phase() == "wall" ? part[i] : -1});

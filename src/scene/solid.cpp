@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/fill.h"
 #include "materials/solid.h"
 #include "scene/soil.h"
 
@@ -21,6 +22,9 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
   const std::string path = fmt::format("bodies[{}]", b);
   const Index first = set.size();
   set.resize(first + static_cast<Index>(filling.at.size()));
+  // A boulder of a given size has a given weight: what its particles stand for is the shape, not the cells of the lattice.
+  const double volume = body.filling == "lattice" && !filling.at.empty()
+                            ? cut_volume(*body.shape, set.spacing(), Dim) / static_cast<double>(filling.at.size()) : filling.volume;
   std::vector<Index> held(body.clamped.size(), 0);
   for (std::size_t k = 0; k < filling.at.size(); ++k) {
     const Vec3& at = filling.at[k];
@@ -44,8 +48,8 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
     set.vector(fields::position)[i] = to_scene<Dim>(place);
     set.vector(fields::reference_position)[i] = to_scene<Dim>(at);
     set.vector(fields::velocity)[i] = set.vector(fields::mean_velocity)[i] = to_scene<Dim>(v);
-    set.scalar(fields::reference_volume)[i] = filling.volume;
-    set.scalar(fields::mass)[i] = solid.density * filling.volume;
+    set.scalar(fields::reference_volume)[i] = volume;
+    set.scalar(fields::mass)[i] = solid.density * volume;
   }
   for (std::size_t k = 0; k < held.size(); ++k)
     if (held[k] == 0) {
@@ -55,10 +59,30 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
     }
 }
 
+/// What only solids, or only elastic ones, can have.
+void check_keys(const Model& model, Diagnostics& found) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Body& body = model.bodies[b];
+    const SolidMaterial* solid = solid_of(model, body);
+    const auto refuse = [&](const char* key, bool given, const char* help) {
+      const std::string path = fmt::format("bodies[{}].{}", b, key);
+      if (given)
+        found.error("E119", model.place_of(path), path, fmt::format("'{}' has no meaning for body '{}', which is {}", key, body.name,
+                                                                    solid ? "rigid" : "no solid"), help);
+    };
+    if (!solid) refuse("spacing", body.spacing.has_value(), "water and soil have the deck's resolution; give the spacing of solids only");
+    if (!solid || solid->rigid()) {
+      refuse("clamped", !body.clamped.empty(), "a rigid solid that is held is a boundary of type wall; elastic solids can be clamped in part");
+      refuse("self_contact", body.self_contact, "only an elastic solid can fold onto itself");
+    }
+  }
+}
+
 }  // namespace
 
 template <int Dim>
 void add_solids(Scene<Dim>& scene, const Model& model, Filling filling, Diagnostics& found) {
+  check_keys(model, found);
   const std::vector<double> spacings = solid_spacings(model);
   for (std::size_t k = 0; k < spacings.size(); ++k) {
     const std::string name = solid_set_name(k);

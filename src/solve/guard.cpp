@@ -226,7 +226,7 @@ template <int Dim>
 std::string Guard<Dim>::suspect(const ParticleSet<Dim>& set, Index i, const std::string& look_for) const {
   const Model& model = world_.model();
   const auto part = static_cast<std::size_t>(set.tag(fields::part)[i]);
-  const bool wall = set.phase() == "wall";
+  const bool wall = set.name() == "walls";
   const std::string path = fmt::format("{}[{}]", wall ? "boundaries" : "bodies", part);
   const Place at = model.place_of(path);
   const std::string name = wall ? (part < model.boundaries.size() ? model.boundaries[part]->name : "") : (part < model.bodies.size() ? model.bodies[part].name : "");

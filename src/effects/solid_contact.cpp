@@ -1,0 +1,307 @@
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "effects/skin.h"
+#include "sph/cell_grid.h"
+#include "sph/neighbor_list.h"
+
+namespace sphgeo {
+namespace {
+
+/// What a contact needs of a particle of the skin or of a wall.
+template <int Dim>
+struct ContactPoint {
+  Vec<Dim> x = Vec<Dim>::Zero(), v = Vec<Dim>::Zero();
+  double volume = 0;
+  double mass = 0;       ///< infinite for a wall
+  double stiffness = 0;  ///< rho_0 c_0^2; 0 for a wall, which takes that of its partner
+  double impedance = 0;  ///< rho_0 c_0 times contact_damping
+  double friction = 0;
+  double reach = 0;      ///< of the contact, 2 h^c, m
+};
+
+/// Contact of solids with each other, with walls, and of a body with itself (Eqs. 78, 79).
+///
+/// The pressure of a contact is rho_0 c_0^2 sum W V over the particles of others in reach, and the forces are the gradient
+/// of an energy, 1/2 rho_0 c_0^2 V (sum W V)^2 for every particle: a contact without friction and damping gives back what
+/// it took. Bodies that start closer than 2 h^c would be pushed apart by their mere presence: for them the reach
+/// is the gap of their particles at rest, so that they touch and are at ease. Walls mirror the pressure of the solid.
+template <int Dim>
+class SolidContact final : public Effect<Dim> {
+ public:
+  static EffectInfo info() {
+    return {"solid_contact", Stage::solid_force, "Eqs. 78, 79", "contact of solids with each other and with walls", false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    if (!world.find("skin")) return {"no solid can meet anything"};
+    std::size_t solids = 0;
+    bool folds = false;
+    for (const Body& b : world.model().bodies)
+      if (solid_of(world.model(), b)) {
+        ++solids;
+        folds = folds || b.self_contact;
+      }
+    if (solids < 2 && !folds && !world.find("walls")) return {"there is one solid, no wall, and it does not fold"};
+    return {std::make_unique<SolidContact>(world), world.find("walls") ? "there are solids and walls" : "solids can meet each other"};
+  }
+
+  explicit SolidContact(const World<Dim>& world) : solids_(solid_sets(world)), walls_(world.find("walls") != nullptr) {}
+
+  std::string acts_on() const override { return "skin"; }
+  Needs needs() const override {
+    Needs n{{{"skin", &fields::position, Access::read}, {"skin", &fields::contact_force, Access::write}, {"skin", &fields::contact_energy, Access::write}}, {}};
+    for (const std::string& set : solids_) {
+      n.fields.push_back({set, &fields::acceleration_sum, Access::add});
+      n.fields.push_back({set, &fields::reference_position, Access::read});
+    }
+    if (walls_) n.lists.push_back({"skin", "walls"});
+    return n;
+  }
+
+  void apply(World<Dim>& world) override {
+    if (arrangement_ != world.arrangement()) find_partners(world);
+    auto& f = world.set("skin").vector(fields::contact_force);
+    auto& energy = world.set("skin").scalar(fields::contact_energy);
+    parallel_for(f.size(), [&](Index k) {
+      f[k].setZero();
+      energy[k] = 0;
+    });
+    if (!near_.empty()) between_solids(world);
+    if (walls_ && world.list("skin", "walls").active() > 0) with_walls(world);
+  }
+
+  std::size_t bytes() const override { return map_.bytes() + list_.bytes() + (points_.capacity() + near_.capacity()) * sizeof(ContactPoint<Dim>); }
+
+ private:
+  ContactPoint<Dim> point_of(Index skin) const {
+    const auto& [of, i] = map_.at(skin);
+    // What is the same for a whole body was set when the reaches were found.
+    ContactPoint<Dim> p = bodies_[static_cast<std::size_t>(of->part[i])];
+    p.x = of->position[i];
+    p.v = of->velocity[i];
+    p.volume = of->reference_volume[i];
+    p.mass = of->mass[i];
+    return p;
+  }
+  static bool clamped(const SolidParticle<Dim>& p) { return p.of->clamp[p.i] >= 0; }
+
+  void find_reaches(const World<Dim>& world);
+  void find_partners(World<Dim>& world);
+  bool may_touch(const World<Dim>& world, Index a, Index b) const;
+  void between_solids(World<Dim>& world);
+  void with_walls(World<Dim>& world);
+
+  // Force on `a` by `b`, and how it grows with the pressures of both.
+  Vec<Dim> force(const ContactPoint<Dim>& a, const ContactPoint<Dim>& b, double pressures, double sums, double dt) const;
+  static Kernel<Dim> kernel(const ContactPoint<Dim>& a, const ContactPoint<Dim>& b) { return Kernel<Dim>(0.5 * std::min(a.reach, b.reach)); }
+
+  std::vector<std::string> solids_;
+  bool walls_;
+  SkinMap<Dim> map_;
+  long arrangement_ = -1;
+  std::vector<ContactPoint<Dim>> bodies_;   // what is the same for all particles of a body
+  std::vector<Index> near_;                 // particles of the skin that may touch another solid
+  std::vector<ContactPoint<Dim>> points_;   // of them
+  std::vector<double> sum_;                 // sum of W V at them
+  NeighborList list_;                       // among them
+};
+
+template <int Dim>
+void SolidContact<Dim>::find_reaches(const World<Dim>& world) {
+  const ParticleSet<Dim>& skin = world.set("skin");
+  bodies_.assign(world.model().bodies.size(), {});
+  std::vector<Vec<Dim>> at(static_cast<std::size_t>(skin.size()));
+  double most = 0;
+  for (Index k = 0; k < skin.size(); ++k) {
+    const auto& [of, i] = map_.at(k);
+    at[static_cast<std::size_t>(k)] = of->reference_position[i];
+    bodies_[static_cast<std::size_t>(of->part[i])].reach = 2 * of->smoothing_length;
+    most = std::max(most, 2 * of->smoothing_length);
+  }
+  const auto frame = world.grid("skin").frame();
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const SolidMaterial* m = solid_of(world.model(), world.model().bodies[b]);
+    if (!m) continue;
+    bodies_[b].stiffness = m->contact_stiffness();
+    bodies_[b].impedance = m->contact_damping * std::sqrt(m->contact_stiffness() * m->density);
+    bodies_[b].friction = m->friction;
+  }
+  const auto close = [&](std::int32_t body, double r2) {
+    double& g = bodies_[static_cast<std::size_t>(body)].reach;
+    g = std::min(g, std::sqrt(r2) * (1 - 1e-9));
+  };
+  CellGrid<Dim> grid;
+  grid.build(at, frame, most);
+  const auto& part = skin.tag(fields::part);
+  for (Index k = 0; k < skin.size(); ++k)
+    grid.for_each_in_reach(at[static_cast<std::size_t>(k)], most, [&](Index j, double r2) {
+      if (part[j] != part[k] && !clamped(map_.at(k)) && !clamped(map_.at(j))) close(part[k], r2);
+    });
+  if (const ParticleSet<Dim>* walls = world.find("walls")) {
+    const auto& y = walls->vector(walls->has(fields::reference_position) ? fields::reference_position : fields::position);
+    for (Index w = 0; w < walls->size(); ++w)
+      grid.for_each_in_reach(y[w], most, [&](Index k, double r2) {
+        if (!clamped(map_.at(k))) close(part[k], r2);
+      });
+  }
+}
+
+template <int Dim>
+bool SolidContact<Dim>::may_touch(const World<Dim>& world, Index a, Index b) const {
+  const auto &p = map_.at(a), &q = map_.at(b);
+  const std::int32_t part = p.of->part[p.i];
+  if (part != q.of->part[q.i]) return true;
+  if (!world.model().bodies[static_cast<std::size_t>(part)].self_contact) return false;
+  return (p.of->reference_position[p.i] - q.of->reference_position[q.i]).norm() > 2 * p.of->smoothing_length;
+}
+
+// Particles of bodies whose boxes come within reach of each other, and the pairs among them.
+template <int Dim>
+void SolidContact<Dim>::find_partners(World<Dim>& world) {
+  arrangement_ = world.arrangement();
+  map_.update(world);
+  if (bodies_.empty()) find_reaches(world);
+  const ParticleSet<Dim>& skin = world.set("skin");
+  const auto& x = skin.vector(fields::position);
+  const auto& part = skin.tag(fields::part);
+  // Each body comes 0.2 of its h closer in an advection step; the skin's h is 1.25 of the largest.
+  const double radius = 2 * skin.smoothing_length();
+  using Box = Eigen::AlignedBox<double, Dim>;
+  std::vector<Box> box(world.model().bodies.size());
+  for (Index k = 0; k < skin.size(); ++k) box[static_cast<std::size_t>(part[k])].extend(x[k]);
+  std::vector<Box> meeting(box.size());  // where a body may meet others
+  for (std::size_t a = 0; a < box.size(); ++a)
+    for (std::size_t b = 0; b < box.size(); ++b) {
+      if (a == b && !world.model().bodies[a].self_contact) continue;
+      if (box[a].isEmpty() || box[b].isEmpty()) continue;
+      const Vec<Dim> margin = Vec<Dim>::Constant(radius);
+      const Box common = Box(box[a].min() - margin, box[a].max() + margin).intersection(Box(box[b].min() - margin, box[b].max() + margin));
+      if (!common.isEmpty()) meeting[a].extend(common);
+    }
+  near_.clear();
+  std::vector<Vec<Dim>> at;
+  for (Index k = 0; k < skin.size(); ++k)
+    if (meeting[static_cast<std::size_t>(part[k])].contains(x[k])) {
+      near_.push_back(k);
+      at.push_back(x[k]);
+    }
+  if (near_.empty()) return;
+  CellGrid<Dim> grid;
+  grid.build(at, world.grid("skin").frame(), radius);
+  list_.template build<Dim>(at, grid, radius, Pairing::within);
+  list_.filter([&](Index a, Index b) { return may_touch(world, near_[static_cast<std::size_t>(a)], near_[static_cast<std::size_t>(b)]); });
+  if (list_.pairs() == 0) near_.clear();
+}
+
+template <int Dim>
+Vec<Dim> SolidContact<Dim>::force(const ContactPoint<Dim>& a, const ContactPoint<Dim>& b, double pressures, double sums, double dt) const {
+  const Vec<Dim> r = a.x - b.x;
+  const double r2 = r.squaredNorm();
+  const Kernel<Dim> w = kernel(a, b);
+  if (r2 >= w.support() * w.support() || r2 == 0) return Vec<Dim>::Zero();
+  const Vec<Dim> dv = a.v - b.v;
+  const Vec<Dim> e = r / std::sqrt(r2);
+  const double closing = -dv.dot(e);
+  const double damping = b.stiffness > 0 ? 0.5 * (a.impedance + b.impedance) : a.impedance;
+  pressures += 2 * damping * std::max(0.0, closing) * std::min(1.0, sums);
+  const double push = -pressures * w.dw_over_r(r2) * a.volume * b.volume * std::sqrt(r2);
+  Vec<Dim> f = push * e;
+  const double friction = b.stiffness > 0 ? std::min(a.friction, b.friction) : a.friction;
+  if (friction > 0) {
+    const Vec<Dim> slip = dv + closing * e;
+    const double speed = slip.norm();
+    // No more than what would stop the slip within some steps: a pair is one of many.
+    const double mass = b.stiffness > 0 ? a.mass * b.mass / (a.mass + b.mass) : a.mass;
+    if (speed > 0) f -= std::min(friction * push / speed, mass / (16 * dt)) * slip;
+  }
+  return f;
+}
+
+template <int Dim>
+void SolidContact<Dim>::between_solids(World<Dim>& world) {
+  const auto n = near_.size();
+  points_.resize(n);
+  sum_.assign(n, 0);
+  parallel_for(static_cast<Index>(n), [&](Index k) { points_[static_cast<std::size_t>(k)] = point_of(near_[static_cast<std::size_t>(k)]); });
+  auto& energy = world.set("skin").scalar(fields::contact_energy);
+  auto& seen = world.set("skin").vector(fields::contact_force);
+  const auto blocks = list_.blocks();
+  const auto for_pairs = [&](auto&& begin, auto&& pair, auto&& end) {
+    parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
+      const auto& block = blocks[static_cast<std::size_t>(b)];
+      for (std::size_t k = 0; k < block.size(); ++k) {
+        if (block.count[k] == 0) continue;
+        const std::size_t i = block.targets[k];
+        auto sum = begin();
+        for (std::uint32_t e = 0; e < block.count[k]; ++e) pair(sum, i, static_cast<std::size_t>(block.entries[block.begin[k] + e] / 8));
+        end(i, sum);
+      }
+    });
+  };
+  for_pairs([] { return 0.0; },
+            [&](double& sum, std::size_t i, std::size_t j) {
+              sum += kernel(points_[i], points_[j]).w((points_[i].x - points_[j].x).squaredNorm()) * points_[j].volume;
+            },
+            [&](std::size_t i, double sum) {
+              sum_[i] = sum;
+              energy[near_[i]] += 0.5 * points_[i].stiffness * points_[i].volume * sum * sum;
+            });
+  const double dt = world.clock.dt_solid;
+  for_pairs([]() -> Vec<Dim> { return Vec<Dim>::Zero(); },
+            [&](Vec<Dim>& sum, std::size_t i, std::size_t j) {
+              const ContactPoint<Dim>&a = points_[i], &b = points_[j];
+              sum += force(a, b, a.stiffness * sum_[i] + b.stiffness * sum_[j], 0.5 * (sum_[i] + sum_[j]), dt);
+            },
+            [&](std::size_t i, const Vec<Dim>& sum) {
+              const auto& [of, k] = map_.at(near_[i]);
+              (*of->acceleration_sum)[k] += sum / points_[i].mass;
+              seen[near_[i]] += sum;
+            });
+}
+
+template <int Dim>
+void SolidContact<Dim>::with_walls(World<Dim>& world) {
+  const ParticleSet<Dim>& walls = world.set("walls");
+  const auto& y = walls.vector(fields::position);
+  const auto& u = walls.vector(fields::velocity);
+  const double volume = std::pow(walls.spacing(), Dim), dt = world.clock.dt_solid;
+  auto& energy = world.set("skin").scalar(fields::contact_energy);
+  auto& seen = world.set("skin").vector(fields::contact_force);
+  const auto blocks = world.list("skin", "walls").blocks();
+  parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
+    const auto& block = blocks[static_cast<std::size_t>(b)];
+    for (std::size_t k = 0; k < block.size(); ++k) {
+      const Index skin = block.targets[k];
+      if (clamped(map_.at(skin))) continue;
+      const ContactPoint<Dim> p = point_of(skin);
+      if (!(p.reach > 0)) continue;
+      ContactPoint<Dim> wall;
+      wall.volume = volume;
+      wall.reach = p.reach;
+      const auto for_walls = [&](auto&& f) {
+        for (std::uint32_t e = 0; e < block.count[k]; ++e) {
+          const auto w = static_cast<Index>(block.entries[block.begin[k] + e] / 8);
+          if ((p.x - y[w]).squaredNorm() >= p.reach * p.reach) continue;
+          wall.x = y[w];
+          wall.v = u[w];
+          f();
+        }
+      };
+      double sum = 0;
+      for_walls([&] { sum += kernel(p, wall).w((p.x - wall.x).squaredNorm()) * volume; });
+      if (sum == 0) continue;
+      Vec<Dim> f = Vec<Dim>::Zero();
+      for_walls([&] { f += force(p, wall, 2 * p.stiffness * sum, sum, dt); });
+      const auto& [of, i] = map_.at(skin);
+      (*of->acceleration_sum)[i] += f / p.mass;
+      seen[skin] += f;
+      energy[skin] += p.stiffness * p.volume * sum * sum;
+    }
+  });
+}
+
+const RegisterEffect<SolidContact> registered;
+
+}  // namespace
+}  // namespace sphgeo

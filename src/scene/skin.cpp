@@ -1,0 +1,72 @@
+#include "scene/skin.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/normal.h"
+#include "materials/solid.h"
+
+namespace sphgeo {
+namespace {
+
+bool meets_something(const Model& model) {
+  const auto solids = std::count_if(model.bodies.begin(), model.bodies.end(), [&](const Body& b) { return solid_of(model, b) != nullptr; });
+  const bool folds = std::any_of(model.bodies.begin(), model.bodies.end(), [](const Body& b) { return b.self_contact; });
+  return solids > 0 && (solids < std::ssize(model.bodies) || solids > 1 || folds || !model.boundaries.empty());
+}
+
+template <int Dim>
+void follow(ParticleSet<Dim>& skin, const ParticleSet<Dim>& solids, std::int32_t number, const Model& model, double depth) {
+  std::vector<Index> near;
+  for (Index i = 0; i < solids.size(); ++i) {
+    const Body& body = model.bodies[static_cast<std::size_t>(solids.tag(fields::part)[i])];
+    if (body.shape->signed_distance(to_space<Dim>(solids.vector(fields::reference_position)[i])) > -depth) near.push_back(i);
+  }
+  const Index first = skin.size();
+  skin.resize(first + static_cast<Index>(near.size()));
+  for (std::size_t k = 0; k < near.size(); ++k) {
+    const Index i = near[k], to = first + static_cast<Index>(k);
+    const std::int32_t part = solids.tag(fields::part)[i];
+    const Body& body = model.bodies[static_cast<std::size_t>(part)];
+    skin.ids()[to] = static_cast<Id>(to);
+    skin.tag(fields::part)[to] = part;
+    skin.tag(fields::source)[to] = static_cast<std::int32_t>(solids.ids()[i]);
+    skin.tag(fields::source_set)[to] = number;
+    skin.vector(fields::position)[to] = solids.vector(fields::position)[i];
+    skin.vector(fields::velocity)[to] = solids.vector(fields::velocity)[i];
+    // As large as the cell that it keeps water and soil out of.
+    skin.scalar(fields::reference_volume)[to] = std::pow(solids.spacing(), Dim);
+    skin.scalar(fields::no_slip)[to] = solid_of(model, body)->slip == "no_slip" ? 1 : 0;
+    const Vec3 normal = outward_normal(*body.shape, to_space<Dim>(solids.vector(fields::reference_position)[i]), 0.5 * solids.spacing(), Dim);
+    skin.vector(fields::normal)[to] = skin.vector(fields::reference_normal)[to] = to_scene<Dim>(normal);
+  }
+}
+
+}  // namespace
+
+template <int Dim>
+void add_skin(Scene<Dim>& scene, const Model& model, Filling filling) {
+  if (!meets_something(model)) return;
+  World<Dim>& world = *scene.world;
+  double h = 0, spacing = 0;
+  for (const auto& set : world.sets())
+    if (set->phase() == "solid") {
+      h = std::max(h, set->smoothing_length());
+      spacing = std::max(spacing, set->spacing());
+    }
+  // A quarter more than a kernel: lists of contacts hold for an advection step, in which two bodies may come 0.4 h closer.
+  ParticleSet<Dim>& skin = world.add_set("skin", "wall", spacing, 1.25 * h, true);
+  for (const FieldSpec* f : {&fields::normal, &fields::reference_normal, &fields::no_slip, &fields::acceleration, &fields::source,
+                             &fields::source_set, &fields::reference_volume})
+    skin.require(*f);
+  if (filling == Filling::none) return;
+  const double depth = std::max(support_radius(model), 2 * h);
+  std::int32_t number = 0;
+  for (const auto& set : world.sets())
+    if (set->phase() == "solid") follow(skin, *set, number++, model, depth);
+}
+
+template void add_skin<2>(Scene<2>&, const Model&, Filling);
+template void add_skin<3>(Scene<3>&, const Model&, Filling);
+
+}  // namespace sphgeo
