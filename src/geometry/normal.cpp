@@ -7,21 +7,24 @@ namespace sphgeo {
 Vec3 outward_normal(const Shape& shape, const Vec3& p, double step, int dim) {
   // On a ridge of the distance function the two sides of a difference cancel exactly; a wider
   // stencil then sees which side is nearer. 0.3 tells a ridge from a 90 degree edge (0.7).
-  double h = step;
+  // In the very middle of a plate it sees neither, and would go on to its far ends: there a
+  // stencil beside the point chooses one of the sides.
   Vec3 best = Vec3::Zero();
-  for (int attempt = 0; attempt < 4; ++attempt, h *= 3.0) {
+  const auto look = [&](const Vec3& at, double h) {
     Vec3 g = Vec3::Zero();
     for (int k = 0; k < 3; ++k) {
       if (dim == 2 && k == 1) continue;
-      Vec3 a = p, b = p;
+      Vec3 a = at, b = at;
       a[k] -= h;
       b[k] += h;
       g[k] = (shape.signed_distance(b) - shape.signed_distance(a)) / (2.0 * h);
     }
-    if (!g.allFinite()) continue;
-    if (g.norm() > best.norm()) best = g;
-    if (best.norm() > 0.3) break;
-  }
+    if (g.allFinite() && g.norm() > best.norm()) best = g;
+    return best.norm() > 0.3;
+  };
+  double h = step;
+  for (int attempt = 0; attempt < 4; ++attempt, h *= 3.0)
+    if (look(p, h) || look(p + h * Vec3(0.61, dim == 2 ? 0.0 : 0.47, 0.54), h)) break;
   return best.norm() > 1e-9 ? Vec3(best.normalized()) : Vec3(Vec3::UnitZ());
 }
 

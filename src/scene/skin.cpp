@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "boundaries/boundary.h"
 #include "geometry/normal.h"
 #include "materials/solid.h"
 
@@ -15,12 +16,29 @@ bool meets_something(const Model& model) {
   return solids > 0 && (solids < std::ssize(model.bodies) || solids > 1 || folds || !model.boundaries.empty());
 }
 
+/// The solids of the boundaries as they are at t = 0.
+std::vector<std::shared_ptr<const Shape>> wall_solids(const Model& model, int dimension) {
+  std::vector<std::shared_ptr<const Shape>> solids;
+  const Placement placement{model.resolution, support_radius(model), dimension};
+  for (const auto& b : model.boundaries)
+    if (const auto* wall = dynamic_cast<const WallBoundary*>(b.get()))
+      if (auto solid = wall->solid(placement)) solids.push_back(std::move(solid));
+  return solids;
+}
+
 template <int Dim>
 void follow(ParticleSet<Dim>& skin, const ParticleSet<Dim>& solids, std::int32_t number, const Model& model, double depth) {
+  const auto walls = wall_solids(model, Dim);
   std::vector<Index> near;
   for (Index i = 0; i < solids.size(); ++i) {
     const Body& body = model.bodies[static_cast<std::size_t>(solids.tag(fields::part)[i])];
-    if (body.shape->signed_distance(to_space<Dim>(solids.vector(fields::reference_position)[i])) > -depth) near.push_back(i);
+    const Vec3 at = to_space<Dim>(solids.vector(fields::reference_position)[i]);
+    if (body.shape->signed_distance(at) <= -depth) continue;
+    // What is held within a wall, such as the foot of a plate: the wall is there already, and a place that is filled twice
+    // would push twice.
+    const bool walled = solids.tag(fields::clamp)[i] >= 0 &&
+                        std::any_of(walls.begin(), walls.end(), [&](const auto& wall) { return wall->signed_distance(at) < 0; });
+    if (!walled) near.push_back(i);
   }
   const Index first = skin.size();
   skin.resize(first + static_cast<Index>(near.size()));
