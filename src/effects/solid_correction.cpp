@@ -40,7 +40,8 @@ class SolidCorrection final : public Effect<Dim> {
              {set_, &fields::reference_correction, Access::write}}, {}, {set_}};
   }
   void prepare(World<Dim>& world) override {
-    for (int k = 0; k < (Dim == 2 ? 2 : 3); ++k) world.records(set_, k);
+    const int records = 1 + solid_slot::stress_records_of_solids<Dim> + (viscous_solids(world, set_) ? 1 : 0);
+    for (int k = 0; k < records; ++k) world.records(set_, k);
   }
 
   void apply(World<Dim>& world) override {

@@ -21,8 +21,32 @@ struct PiolaForce {
   }
 };
 
+/// With a viscosity along the line between both particles as they are now, which keeps momentum and angular momentum.
+template <int Dim>
+struct ViscousPiolaForce {
+  PiolaForce<Dim> stress;
+  double softening;
+
+  template <class T>
+  struct Sums {
+    LaneVec<Dim, T> force{}, viscous{};
+  };
+  template <class T, int N>
+  void operator()(Sums<T>& sum, const Record<Dim, T, N>& i, const Record<Dim, T, N>& j, const LaneVec<Dim, T>& r, const T& r2) const {
+    typename PiolaForce<Dim>::template Sums<T> elastic{sum.force};
+    stress(elastic, i, j, r, r2);
+    sum.force = elastic.force;
+    const LaneVec<Dim, T> now = r + i.vec(solid_slot::travelled<Dim>) - j.vec(solid_slot::travelled<Dim>);
+    const LaneVec<Dim, T> dv = i.vec(solid_slot::velocity<Dim>) - j.vec(solid_slot::velocity<Dim>);
+    sum.viscous += (stress.kernel.dw_over_r(r2) * dot(dv, now) / (dot(now, now) + T(softening))) * now;
+  }
+};
+
 /// Internal forces of elastic solids (Eq. 65). With the deformation of Eq. 67 they are the gradient of the strain
 /// energy, so that nothing but the time step changes the energy.
+///
+/// The gradients do not see deformations that alternate from particle to particle, and nothing takes the energy of waves
+/// as short as the spacing, which impacts and the forces of water feed. A deck may ask for a viscosity that does.
 template <int Dim>
 class SolidMomentum final : public Effect<Dim> {
  public:
@@ -41,25 +65,38 @@ class SolidMomentum final : public Effect<Dim> {
   }
 
   void apply(World<Dim>& world) override {
-    ParticleSet<Dim>& set = world.set(set_);
-    const auto& volume = set.scalar(fields::reference_volume);
-    const auto& m = set.scalar(fields::mass);
-    auto& sum_of_forces = set.vector(fields::acceleration_sum);
-    const PiolaForce<Dim> pair{Kernel<Dim>(set.smoothing_length())};
-    world.with_pair_precision([&](auto number) {
-      using T = decltype(number);
-      const auto finish = [&](Index i, const auto& sum) { sum_of_forces[i] = (volume[i] * volume[i] / m[i]) * to_vec(sum.force); };
-      const auto& one = world.records(set_, 1).template get<T>();
-      if constexpr (Dim == 2) {
-        gather<PiolaForce<Dim>::template Sums>(world.reference_list(set_), one, one, pair, finish);
-      } else {
-        const auto both = with(one, world.records(set_, 2).template get<T>());
-        gather<PiolaForce<Dim>::template Sums>(world.reference_list(set_), both, both, pair, finish);
-      }
-    });
+    const ParticleSet<Dim>& set = world.set(set_);
+    const Kernel<Dim> kernel(set.smoothing_length());
+    if (viscous_solids(world, set_)) run(world, ViscousPiolaForce<Dim>{{kernel}, 0.01 * kernel.h * kernel.h});
+    else run(world, PiolaForce<Dim>{kernel});
   }
 
  private:
+  template <class Pair>
+  void run(World<Dim>& world, const Pair& pair) {
+    constexpr bool viscous = std::is_same_v<Pair, ViscousPiolaForce<Dim>>;
+    ParticleSet<Dim>& set = world.set(set_);
+    const auto& volume = set.scalar(fields::reference_volume);
+    const auto& m = set.scalar(fields::mass);
+    const auto& part = set.tag(fields::part);
+    auto& sum_of_forces = set.vector(fields::acceleration_sum);
+    const SolidParts parts(world);
+    world.with_pair_precision([&](auto number) {
+      using T = decltype(number);
+      const auto records = [&](int k) -> const Records<Dim, T>& { return world.records(set_, k).template get<T>(); };
+      const auto walk = [&](const auto& all) {
+        gather<Pair::template Sums>(world.reference_list(set_), all, all, pair, [&](Index i, const auto& sum) {
+          Vec<Dim> force = to_vec(sum.force);
+          if constexpr (viscous) force += parts[part[i]].viscosity * set.smoothing_length() * to_vec(sum.viscous);
+          sum_of_forces[i] = (volume[i] * volume[i] / m[i]) * force;
+        });
+      };
+      if constexpr (Dim == 2 && !viscous) walk(records(1));
+      else if constexpr (Dim == 2 || !viscous) walk(with(records(1), records(2)));
+      else walk(with(records(1), records(2), records(3)));
+    });
+  }
+
   std::string set_;
 };
 

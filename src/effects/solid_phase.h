@@ -24,6 +24,7 @@ struct SolidPart {
   Hyperelastic law{0, 0};
   double wave_speed = 0;
   double damping = 0;
+  double viscosity = 0;                     ///< alpha rho_0 c, Pa s/m
 };
 
 /// Parameters of all bodies of the deck, by index.
@@ -40,12 +41,22 @@ struct SolidParts {
         part.law = {part.elastic->shear_modulus(), part.elastic->lame(), part.elastic->law == "neo_hookean"};
         part.wave_speed = part.elastic->wave_speed();
         part.damping = part.elastic->damping;
+        part.viscosity = part.elastic->viscosity_factor * part.elastic->density * part.elastic->wave_speed();
       }
       of.push_back(part);
     }
   }
   const SolidPart& operator[](std::int32_t part) const { return of[static_cast<std::size_t>(part)]; }
 };
+
+/// Whether a set has solids with an artificial viscosity.
+template <int Dim>
+bool viscous_solids(const World<Dim>& world, const std::string& set) {
+  const SolidParts parts(world);
+  for (std::size_t b = 0; b < parts.of.size(); ++b)
+    if (parts.of[b].viscosity > 0 && solid_set_of(world.model(), b) == set) return true;
+  return false;
+}
 
 /// Names of the sets of solids in a world.
 template <int Dim>
@@ -79,6 +90,13 @@ inline constexpr int displacement = 4;  ///< w, see Deformation
 /// Number k of P . B by rows, Dim x Dim numbers, behind the position of record 1.
 template <int Dim>
 constexpr int piola(int k) { return Dim + k < 8 ? Dim + k : 8 + (Dim + k - 8); }
+/// Records of the stress alone. The one behind them holds displacement and velocity, for viscous solids.
+template <int Dim>
+inline constexpr int stress_records_of_solids = Dim == 2 ? 1 : 2;
+template <int Dim>
+inline constexpr int travelled = stress_records_of_solids<Dim> * record_size;
+template <int Dim>
+inline constexpr int velocity = travelled<Dim> + 3;
 }  // namespace solid_slot
 
 /// A plain matrix of the scene's dimension.

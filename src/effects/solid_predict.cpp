@@ -61,9 +61,11 @@ class SolidPredict final : public Effect<Dim> {
     const auto& part = set.tag(fields::part);
     const auto& clamp = set.tag(fields::clamp);
     const SolidParts parts(world);
+    const bool viscous = viscous_solids(world, set_);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& records = world.records(set_, 0).template get<T>();
+      auto* motion_records = viscous ? &world.records(set_, 1 + solid_slot::stress_records_of_solids<Dim>).template get<T>() : nullptr;
       parallel_for(set.size(), [&](Index i) {
         if (!parts[part[i]].elastic) return;
         if (clamp[i] < 0) {
@@ -73,6 +75,12 @@ class SolidPredict final : public Effect<Dim> {
           x[i] = motion ? to_scene<Dim>(motion->position(to_space<Dim>(reference[i]), middle)) : reference[i];
         }
         deformation_.pack(records, i, x[i], reference[i], part[i]);
+        if (!motion_records) return;
+        T* slot = (*motion_records)[i];
+        for (int k = 0; k < Dim; ++k) {
+          slot[k] = static_cast<T>(x[i][k] - reference[i][k]);
+          slot[3 + k] = static_cast<T>(v[i][k]);
+        }
       });
     });
   }

@@ -1,6 +1,8 @@
 #pragma once
 // Water against wall particles: one pair function for both directions (Eqs. 73, 74, 76, 77).
 
+#include <cmath>
+
 #include "effects/lattice_sums.h"
 #include "effects/water_phase.h"
 
@@ -14,6 +16,8 @@ inline constexpr int no_slip = 7;  ///< 1 = no slip, 0 = free slip
 inline constexpr int normal = 8;   ///< n, outward from the solid
 inline constexpr int push = 12;    ///< max[0, (dv/dt - g) . n] of the wall
 inline constexpr int weight = 13;  ///< -g . n
+inline constexpr int yields = 14;  ///< 1 where the surface of a solid moves with the water, 0 for walls
+inline constexpr int near = 15;    ///< of solids, distance below which water is too close, m; 0 for walls
 }  // namespace wall_slot
 
 /// One-sided Riemann problem between a water particle and a wall particle.
@@ -26,6 +30,13 @@ inline constexpr int weight = 13;  ///< -g . n
 /// rest, constant in free fall. dv/dt is that of the last acoustic step. Both are divided by the
 /// kernel's lattice moment (0.995 in 2D for h = 1.8 dp): in still water the pressure gradient is as
 /// much steeper than rho g as the sum over the water is weaker, and the wall has to follow it.
+///
+/// Solids. Eq. 95 takes their mean acceleration for the push. For a plate lighter than the water that its kernel
+/// reaches, what one step does with it is undone by more than as much in the next, and its particles shake ever
+/// harder. What it stands for is the pressure gradient in the water at a surface that moves with it: so here, too, it is
+/// that of the water itself, -(g - dv/dt) . n where that presses the water against the solid.
+/// A plate may be thinner than half a kernel, and then has less than a wall's worth of particles to hold water back with: water
+/// that comes too near to one of them meets the bulk modulus, so that nothing gets through however thin it is.
 template <int Dim>
 struct WallPair {
   Kernel<Dim> kernel;
@@ -34,15 +45,22 @@ struct WallPair {
   double two_eta;
   double softening;      ///< 0.01 h^2
   double slope;          ///< 1 / lattice_moment: the pressure gradient that the water's own sum balances
+  double bulk;           ///< rho0 c0^2 times the volume of a water particle
 
   WallPair(const WaterConstants& w, double h, double dp)
       : kernel(h), riemann(w), inverse_sound(1 / w.sound_speed), two_eta(2 * w.viscosity), softening(0.01 * h * h),
-        slope(1 / lattice_sums(kernel, dp).moment) {}
+        slope(1 / lattice_sums(kernel, dp).moment), bulk(w.density * w.sound_speed * w.sound_speed * std::pow(dp, Dim)) {}
 
   /// Pressure rise of the wall by the push of Eq. 73, per rho.
   template <class T>
   static T rise(const Record<Dim, T, 2>& wall, const T& r_n) {
     return wall[wall_slot::push] * max(T(0), r_n);
+  }
+  template <class T>
+  static T rise(const Record<Dim, T, 2>& water, const Record<Dim, T, 2>& wall, const LaneVec<Dim, T>& n, const T& r_n) {
+    const T own = max(T(0), T(-1) * dot(water.vec(water_slot::pull), n));
+    const T push = wall[wall_slot::push] + wall[wall_slot::yields] * (own - wall[wall_slot::push]);
+    return push * max(T(0), r_n);
   }
 
   /// Friction of the wall on the water per unit volume of the water.
@@ -71,11 +89,14 @@ struct WallPair {
     const T gradient = kernel.dw_over_r(r2) * wall[wall_slot::volume];
     const T r_n = dot(r, n);
     const LaneVec<Dim, T> along = r - r_n * n;
-    const T dummy = T(slope) * (rise(wall, r_n) - dot(water.vec(water_slot::pull), along));
+    const T dummy = T(slope) * (rise(water, wall, n, r_n) - dot(water.vec(water_slot::pull), along));
     const T pressures = T(2) * water[water_slot::pressure] + water[water_slot::density] * dummy;
     // v_i - v_wall^d = 2 (v_i - v_wall) along n, with no slip or without.
     const T dissipation = riemann.dissipation(T(-2) * dot(dv, n));
-    LaneVec<Dim, T> f = (T(-1) * pressures * gradient) * r;
+    // Per volume of the solid's particle: a fine one holds as much as a coarse one.
+    const T close = max(T(0), wall[wall_slot::near] - length(r2));
+    const T hold = T(bulk) * close / max(T(1e-30), wall[wall_slot::near] * wall[wall_slot::volume]);
+    LaneVec<Dim, T> f = (T(-1) * (pressures + hold) * gradient) * r;
     f -= (dissipation * gradient * length(r2)) * n;
     return f;
   }

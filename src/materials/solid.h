@@ -28,6 +28,7 @@ struct Elastic final : SolidMaterial {
   double poisson_ratio = 0.3;  ///< nu
   std::string law = "neo_hookean";  ///< neo_hookean | saint_venant_kirchhoff
   double damping = 0;          ///< by mass, 1/s: dv/dt = ... - damping v
+  double viscosity_factor = 0; ///< alpha of an artificial viscosity alpha rho_0 c h between particles
 
   bool rigid() const override { return false; }
   double shear_modulus() const { return youngs_modulus / (2 * (1 + poisson_ratio)); }
