@@ -172,6 +172,10 @@ Schema<Numerics> Numerics::schema() {
       .at_least(0.8)
       .at_most(3)
       .equation("below Eq. 102");
+  s.optional("solid_gradient", &Numerics::solid_gradient, unit::none,
+             "fields whose gradient solids see exactly: linear, as Eq. 66 has it, or quadratic also near surfaces, which bends plates of few layers as stiffly as thick ones")
+      .choices({"linear", "quadratic"})
+      .equation("Eq. 66");
   s.optional("cfl_solid", &Numerics::cfl_solid, unit::none, "CFL number of the time step of solids").above(0).at_most(1).equation("Eq. 94");
   s.optional("max_lost_fraction", &Numerics::max_lost_fraction, unit::none,
              "the run stops when more than this fraction of a set has left the domain or sits inside a "

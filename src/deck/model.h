@@ -67,6 +67,7 @@ struct Numerics {
   bool transport_velocity_soil = false;  ///< Eq. 87 for soil
   std::optional<double> h_factor_solid;  ///< h / dp; empty: 1.15
   double cfl_solid = 0.6;                ///< Eq. 94
+  std::string solid_gradient = "linear"; ///< linear (Eq. 66) | quadratic: fields whose gradient is exact at rest
   std::string pore_water = "equal_mass";  ///< equal_mass | variable_mass | constant_volume, of water in soil
   double water_fraction_floor = 0.05;     ///< least n^w of Eq. 56
   bool transport_target_volume = true;    ///< V^tar of Eq. 88, or the volume at rest of clear water (Eq. 87)

@@ -1,5 +1,5 @@
 #include "core/parallel.h"
-#include "effects/solid_phase.h"
+#include "effects/quadratic_gradient.h"
 
 namespace sphgeo {
 namespace {
@@ -46,7 +46,7 @@ class SolidCorrection final : public Effect<Dim> {
 
   void apply(World<Dim>& world) override {
     if (done_) return;
-    restore(world);
+    place(world);
     const ParticleSet<Dim>& set = world.set(set_);
     const auto& volume = set.scalar(fields::reference_volume);
     auto& correction = world.set(set_).tensor(fields::reference_correction);
@@ -65,8 +65,15 @@ class SolidCorrection final : public Effect<Dim> {
         correction[i] = b;
       });
     });
+    if (world.model().numerics.solid_gradient == "quadratic") world.reference_weights(set_) = quadratic_weights(world, set_);
   }
   void restore(World<Dim>& world) override {
+    place(world);
+    if (world.model().numerics.solid_gradient == "quadratic") world.reference_weights(set_) = quadratic_weights(world, set_);
+  }
+
+ private:
+  void place(World<Dim>& world) {
     done_ = true;
     const ParticleSet<Dim>& set = world.set(set_);
     const auto& at_rest = set.vector(fields::reference_position);
@@ -79,7 +86,6 @@ class SolidCorrection final : public Effect<Dim> {
     });
   }
 
- private:
   std::string set_;
   bool done_ = false;
 };

@@ -81,14 +81,26 @@ class SolidMomentum final : public Effect<Dim> {
     const auto& part = set.tag(fields::part);
     auto& sum_of_forces = set.vector(fields::acceleration_sum);
     const SolidParts parts(world);
+    const PairWeights<Dim>& more = world.reference_weights(set_);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       const auto records = [&](int k) -> const Records<Dim, T>& { return world.records(set_, k).template get<T>(); };
+      const T* stress[] = {records(1).data(), records(solid_slot::stress_records_of_solids<Dim>).data()};
       const auto walk = [&](const auto& all) {
         gather<Pair::template Sums>(world.reference_list(set_), all, all, pair, [&](Index i, const auto& sum) {
           Vec<Dim> force = to_vec(sum.force);
           if constexpr (viscous) force += parts[part[i]].viscosity * set.smoothing_length() * to_vec(sum.viscous);
-          sum_of_forces[i] = (volume[i] * volume[i] / m[i]) * force;
+          force *= volume[i];
+          if (!more.empty())
+            more.by_source.for_row(i, [&](Index k, const float* weight) {
+              for (int a = 0; a < Dim; ++a)
+                for (int c = 0; c < Dim; ++c) {
+                  constexpr auto slot_of = solid_slot::piola<Dim>;
+                  const int slot = slot_of(a * Dim + c);
+                  force[a] -= static_cast<double>(stress[slot / record_size][k * record_size + slot % record_size]) * static_cast<double>(weight[c]);
+                }
+            });
+          sum_of_forces[i] = (volume[i] / m[i]) * force;
         });
       };
       if constexpr (Dim == 2 && !viscous) walk(records(1));

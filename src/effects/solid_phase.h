@@ -202,10 +202,19 @@ void Deformation<Dim>::gather_gradients(World<Dim>& world, F&& finish) const {
   world.with_pair_precision([&](auto number) {
     using T = decltype(number);
     const auto& records = world.records(set_, 0).template get<T>();
+    const PairWeights<Dim>& more = world.reference_weights(set_);
     gather<DisplacementGradient<Dim>::template Sums>(world.reference_list(set_), records, records, pair, [&](Index i, const auto& sum) {
       Mat<Dim> g;
       for (int k = 0; k < Dim * Dim; ++k) g(k / Dim, k % Dim) = sum.g[k];
-      finish(i, Mat<Dim>(volume[i] * g * to_matrix<Dim>(correction[i])));  // one volume for all pairs of a body
+      g = (volume[i] * g * to_matrix<Dim>(correction[i])).eval();  // one volume for all pairs of a body
+      if (!more.empty())
+        more.by_target.for_row(i, [&](Index j, const float* weight) {
+          for (int k = 0; k < Dim; ++k) {
+            const double dw = static_cast<double>(records[j][solid_slot::displacement + k]) - static_cast<double>(records[i][solid_slot::displacement + k]);
+            for (int l = 0; l < Dim; ++l) g(k, l) += dw * static_cast<double>(weight[l]);
+          }
+        });
+      finish(i, g);
     });
   });
 }

@@ -205,6 +205,7 @@ std::size_t World<Dim>::bytes() const {
   for (const auto& [name, g] : grids_) sum += g.bytes();
   for (const auto& [key, l] : lists_) sum += l.bytes();
   for (const auto& [key, l] : reference_lists_) sum += l.bytes();
+  for (const auto& [key, w] : reference_weights_) sum += w.bytes();
   return sum;
 }
 

@@ -14,6 +14,7 @@
 #include "sph/cell_grid.h"
 #include "sph/fixed_point.h"
 #include "sph/neighbor_list.h"
+#include "sph/pair_weights.h"
 #include "sph/records.h"
 
 namespace sphgeo {
@@ -75,6 +76,8 @@ class World {
   /// Pairs of solids within one body, by their reference positions; those of rigid bodies are left out.
   NeighborList& reference_list(const std::string& set) { return reference_lists_.at(set); }
   void require_reference_list(const std::string& set) { reference_lists_.try_emplace(set); }
+  /// What is added to the weights of those pairs; empty unless an effect fills it.
+  PairWeights<Dim>& reference_weights(const std::string& set) { return reference_weights_[set]; }
   const CellGrid<Dim>& grid(const std::string& set) const { return grids_.at(set); }
 
   /// Pair sums run in single or double precision: calls f with a value of that type.
@@ -140,6 +143,7 @@ class World {
   std::map<std::string, CellGrid<Dim>> grids_;
   std::map<std::pair<std::string, std::string>, NeighborList> lists_;
   std::map<std::string, NeighborList> reference_lists_;
+  std::map<std::string, PairWeights<Dim>> reference_weights_;
   std::map<std::pair<std::string, int>, RecordPair<Dim>> records_;
   std::map<std::string, Index> lost_;
   long arrangement_ = 0;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/hash.h"
+#include "materials/hyperelastic.h"
 #include "support/rig.h"
 
 using namespace sphgeo;
@@ -112,8 +113,8 @@ void check_momentum(const std::string& numerics, double tolerance) {
 
 /// Work of the internal forces on a small displacement against the change of the strain energy.
 template <int Dim>
-void check_energy() {
-  Rig<Dim> rig(block(Dim, "numerics: {pair_precision: double}"));
+void check_energy(const std::string& numerics) {
+  Rig<Dim> rig(block(Dim, numerics));
   disturb(rig, 0.1);
   rig.plan_it({{"solids", "strain_energy", "test", false}});
   auto& set = rig.world.set("solids");
@@ -142,9 +143,45 @@ void check_energy() {
   CHECK(up - down == doctest::Approx(-work).epsilon(1e-6));
 }
 
+/// Largest error of the strain energy of a bent block, in parts of the largest.
+template <int Dim>
+double bending_error(const std::string& gradient) {
+  Rig<Dim> rig(block(Dim, "numerics: {pair_precision: double, solid_gradient: " + gradient + "}"));
+  auto& set = rig.world.set("solids");
+  const double bend = 1e-3;
+  for (Index i = 0; i < set.size(); ++i) {
+    const Vec<Dim> at = set.vector(fields::reference_position)[i];
+    Vec<Dim> u = Vec<Dim>::Zero();
+    u[0] = -bend * at[0] * at[Dim - 1];
+    u[Dim - 1] = bend * (0.5 * at[0] * at[0] + 0.3 * at[Dim - 1] * at[Dim - 1]);
+    set.vector(fields::position)[i] = at + u;
+  }
+  rig.plan_it({{"solids", "strain_energy", "test", false}});
+  rig.plan->run(Stage::observe);
+  const auto& energy = set.scalar(fields::strain_energy);
+  double worst = 0, most = 0;
+  for (Index i = 0; i < set.size(); ++i) {
+    const Vec<Dim> at = set.vector(fields::reference_position)[i];
+    Mat3 g = Mat3::Zero();
+    g(0, 0) = -bend * at[Dim - 1];
+    g(0, 2) = -bend * at[0];
+    g(2, 0) = bend * at[0];
+    g(2, 2) = 0.6 * bend * at[Dim - 1];
+    const double expected = std::pow(0.1, Dim) * strain_energy_density(g, {1e6 / 2.6, 1e6 * 0.3 / (1.3 * 0.4), true});
+    worst = std::max(worst, std::abs(energy[i] - expected));
+    most = std::max(most, expected);
+  }
+  return worst / most;
+}
+
 }  // namespace
 
 TEST_SUITE("effects") {
+  TEST_CASE("the quadratic gradient sees bending as it is, also at faces and corners; the linear one does not") {
+    CHECK(bending_error<2>("quadratic") < 1e-5);
+    CHECK(bending_error<3>("quadratic") < 1e-5);
+    CHECK(bending_error<2>("linear") > 0.05);
+  }
   TEST_CASE("a turned solid bears no stress") {
     check_rotation<2>("numerics: {pair_precision: double}", 1e-12);
     check_rotation<3>("numerics: {pair_precision: double}", 1e-12);
@@ -158,12 +195,16 @@ TEST_SUITE("effects") {
   TEST_CASE("internal forces of a solid keep its momentum") {
     check_momentum<2>("numerics: {pair_precision: double}", 1e-14);
     check_momentum<3>("numerics: {pair_precision: double}", 1e-14);
+    check_momentum<2>("numerics: {pair_precision: double, solid_gradient: quadratic}", 1e-13);
+    check_momentum<3>("numerics: {pair_precision: double, solid_gradient: quadratic}", 1e-13);
     check_momentum<2>("", 1e-6);
     check_momentum<3>("", 1e-6);
   }
   TEST_CASE("internal forces of a solid are the gradient of its strain energy") {
-    check_energy<2>();
-    check_energy<3>();
+    for (const std::string gradient : {"linear", "quadratic"}) {
+      check_energy<2>("numerics: {pair_precision: double, solid_gradient: " + gradient + "}");
+      check_energy<3>("numerics: {pair_precision: double, solid_gradient: " + gradient + "}");
+    }
   }
   TEST_CASE("a clamped region rests or moves as prescribed") {
     Rig<2> rig(block(2, "", R"(clamped:
