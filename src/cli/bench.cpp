@@ -57,6 +57,15 @@ std::string soil_block(long n) {
       "          velocity: ['0.1*sin(y)', '0.1*sin(z)', '0.1*sin(x)']}}]\n", cells);
 }
 
+std::string solid_block(long n) {
+  const int cells = std::max(4, static_cast<int>(std::lround(std::cbrt(static_cast<double>(n)))));
+  return fmt::format(
+      "dimension: 3\nresolution: 1\ngravity: [0, 0, 0]\nend_time: 1e6\n"
+      "materials: [{{name: rubber, type: elastic, density: 1000, youngs_modulus: 1e5}}]\n"
+      "bodies: [{{name: block, material: rubber, shape: {{type: box, min: [0, 0, 0], max: [{0}, {0}, {0}]}},\n"
+      "          velocity: ['0.1*sin(y)', '0.1*sin(z)', '0.1*sin(x)']}}]\n", cells);
+}
+
 std::string dam_break(long n) {
   // A column of 2:1:1 in a tank four times as long, with walls: the share of wall pairs is that of a real run.
   const double cells = std::cbrt(static_cast<double>(n) / 2);
@@ -85,6 +94,7 @@ const BenchScene scenes[] = {
     {"water_block_h1.3", [](long n) { return water_block(n, 1.3); }, 1.3, 5.0, 2.8},
     {"water_block_h1.8", [](long n) { return water_block(n, 1.8); }, 1.8, 2.8, 1.4},
     {"soil_block_h1.3", soil_block, 1.3, 3.7, 1.9},
+    {"solid_block_h1.15", solid_block, 1.15, 4.5, 2.8},
     {"saturated_block", saturated_block, 1.8, 1.8, 1.0},
     {"dam_break", dam_break, 1.8, std::nullopt, std::nullopt},
 };
