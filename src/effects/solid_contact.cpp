@@ -163,13 +163,14 @@ void SolidContact<Dim>::find_partners(World<Dim>& world) {
   map_.update(world);
   if (bodies_.empty()) find_reaches(world);
   const ParticleSet<Dim>& skin = world.set("skin");
-  const auto& x = skin.vector(fields::position);
+  // As they were at the rearrangement, also for a run that goes on after it: the order of pairs is that of cells.
+  const std::vector<Vec<Dim>> x = world.arranged_places("skin");
   const auto& part = skin.tag(fields::part);
   // Each body comes 0.2 of its h closer in an advection step; the skin's h is 1.25 of the largest.
   const double radius = 2 * skin.smoothing_length();
   using Box = Eigen::AlignedBox<double, Dim>;
   std::vector<Box> box(world.model().bodies.size());
-  for (Index k = 0; k < skin.size(); ++k) box[static_cast<std::size_t>(part[k])].extend(x[k]);
+  for (Index k = 0; k < skin.size(); ++k) box[static_cast<std::size_t>(part[k])].extend(x[static_cast<std::size_t>(k)]);
   std::vector<Box> meeting(box.size());  // where a body may meet others
   for (std::size_t a = 0; a < box.size(); ++a)
     for (std::size_t b = 0; b < box.size(); ++b) {
@@ -182,9 +183,9 @@ void SolidContact<Dim>::find_partners(World<Dim>& world) {
   near_.clear();
   std::vector<Vec<Dim>> at;
   for (Index k = 0; k < skin.size(); ++k)
-    if (meeting[static_cast<std::size_t>(part[k])].contains(x[k])) {
+    if (meeting[static_cast<std::size_t>(part[k])].contains(x[static_cast<std::size_t>(k)])) {
       near_.push_back(k);
-      at.push_back(x[k]);
+      at.push_back(x[static_cast<std::size_t>(k)]);
     }
   if (near_.empty()) return;
   CellGrid<Dim> grid;
