@@ -74,7 +74,7 @@ def main():
     parser.add_argument("sphgeo")
     parser.add_argument("decks", nargs="*")
     parser.add_argument("--steps", type=int, default=6)
-    args = parser.parse_args()
+    args = parser.parse_intermixed_args()
     found = sorted(p.relative_to(ROOT).as_posix() for p in (ROOT / "decks").rglob("*.yaml"))
     decks = [Path(d).resolve().relative_to(ROOT).as_posix() for d in args.decks] or found
     cases = [(d, [f"resolution={COARSER[d]}"] if d in COARSER else []) for d in decks]
