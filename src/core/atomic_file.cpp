@@ -32,6 +32,29 @@ int write_fully(int descriptor, const char* data, std::size_t bytes) {
   return 0;
 }
 
+/// Hands whole pages to the disk without a copy in the system's cache, which takes ten times the processor time. Returns how
+/// many bytes it wrote: fewer than all, or none, where the file system, the memory or the place in the file is not made for that.
+std::size_t write_directly([[maybe_unused]] int descriptor, [[maybe_unused]] const char* data, [[maybe_unused]] std::size_t bytes,
+                           [[maybe_unused]] std::uint64_t offset) {
+  std::size_t done = 0;
+#if defined(O_DIRECT)
+  constexpr std::size_t page = 4096, worth_it = std::size_t{4} << 20;
+  if (bytes < worth_it || offset % page != 0 || reinterpret_cast<std::uintptr_t>(data) % page != 0) return 0;
+  const int flags = ::fcntl(descriptor, F_GETFL);
+  if (flags < 0 || ::fcntl(descriptor, F_SETFL, flags | O_DIRECT) != 0) return 0;
+  const std::size_t whole = bytes / page * page;
+  while (done < whole) {
+    const ssize_t n = ::write(descriptor, data + done, whole - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) break;  // the usual way follows, and says what is wrong
+    done += static_cast<std::size_t>(n);
+    if (done % page != 0) break;
+  }
+  ::fcntl(descriptor, F_SETFL, flags);
+#endif
+  return done;
+}
+
 /// A pipe or a device must not be replaced by a rename.
 bool is_special(const std::string& path) {
   struct stat info {};
@@ -84,7 +107,9 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
     return;
   }
   flush_buffer();
-  const int error = write_fully(descriptor_, static_cast<const char*>(data), bytes);
+  const auto* from = static_cast<const char*>(data);
+  const std::size_t direct = temporary_.empty() ? 0 : write_directly(descriptor_, from, bytes, written_ - bytes);
+  const int error = write_fully(descriptor_, from + direct, bytes - direct);
   if (error != 0) fail("cannot write", error);
 }
 

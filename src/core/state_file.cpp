@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 #include <hdf5.h>
+#include <sys/mman.h>
 
+#include <algorithm>
 #include <charconv>
-#include <cstdlib>
 #include <cstring>
 #include <type_traits>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/hash.h"
+#include "core/parallel.h"
 
 namespace sphgeo {
 namespace {
@@ -79,15 +81,42 @@ void tame_hdf5() {
 /// HDF5 knows its files by name: no two that live at once may share one, nor that of a file on disk.
 std::string unique_name(const void* of) { return fmt::format("sphgeo state in memory {}", of); }
 
-/// The memory of an in-memory file, taken over when HDF5 lets go of it: the image is never copied.
+/// The memory of an in-memory file, taken over when HDF5 lets go of it: the image is never copied. Whole pages, as
+/// AtomicFile wants them; all threads ask the system for them, which takes as long as filling them.
 struct Taken {
   void* data = nullptr;
+  std::size_t bytes = 0;
+
+  bool grow(std::size_t n) {
+    void* p = data ? ::mremap(data, bytes, n, MREMAP_MAYMOVE) : ::mmap(nullptr, n, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (p == MAP_FAILED) return false;
+    constexpr std::size_t piece = std::size_t{4} << 20;
+    const std::size_t first = data ? bytes / piece : 0;
+    data = p;
+    bytes = n;
+#if defined(MADV_HUGEPAGE)
+    ::madvise(p, n, MADV_HUGEPAGE);
+#endif
+#if defined(MADV_POPULATE_WRITE)
+    parallel_blocks(static_cast<Index>((n + piece - 1) / piece - first), 1, [&](Index begin, Index, Index) {
+      const std::size_t at = (first + static_cast<std::size_t>(begin)) * piece;
+      ::madvise(static_cast<char*>(data) + at, std::min(piece, n - at), MADV_POPULATE_WRITE);  // later, if not now
+    });
+#endif
+    return true;
+  }
+  void release() {
+    if (data) ::munmap(data, bytes);
+    data = nullptr;
+  }
 };
-void* image_malloc(std::size_t n, H5FD_file_image_op_t, void*) { return std::malloc(n); }
-void* image_realloc(void* p, std::size_t n, H5FD_file_image_op_t, void*) { return std::realloc(p, n); }
-herr_t image_free(void* p, H5FD_file_image_op_t op, void* user) {
-  if (op == H5FD_FILE_IMAGE_OP_FILE_CLOSE) static_cast<Taken*>(user)->data = p;
-  else std::free(p);
+void* image_malloc(std::size_t n, H5FD_file_image_op_t, void* user) {
+  Taken& taken = *static_cast<Taken*>(user);
+  return taken.grow(n) ? taken.data : nullptr;
+}
+void* image_realloc(void*, std::size_t n, H5FD_file_image_op_t op, void* user) { return image_malloc(n, op, user); }
+herr_t image_free(void*, H5FD_file_image_op_t op, void* user) {
+  if (op != H5FD_FILE_IMAGE_OP_FILE_CLOSE) static_cast<Taken*>(user)->release();
   return 0;
 }
 void* share_user(void* user) { return user; }
@@ -105,14 +134,14 @@ struct StateFileWriter::Image {
   }
   ~Image() {
     if (file >= 0) file.close();
-    std::free(taken.data);
+    taken.release();
   }
 
   static Handle create(std::size_t expected, Taken& taken) {
     tame_hdf5();
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    // Rarely more than one piece: what HDF5 adds to the arrays is small.
-    H5Pset_fapl_core(access, expected + expected / 64 + (1u << 18), false);
+    // In pieces: what is added to the arrays is mostly small, and HDF5 fills each whole piece with zeros.
+    H5Pset_fapl_core(access, expected / 16 + (1u << 18), false);
     H5FD_file_image_callbacks_t calls{image_malloc, nullptr, image_realloc, image_free, share_user, leave_user, &taken};
     if (H5Pset_file_image_callbacks(access, &calls) < 0)
       throw Error(ExitCode::internal, "HDF5 refused to build a file in memory");
@@ -157,9 +186,12 @@ std::uint64_t StateFileWriter::write(const std::string& path, const std::string&
     throw Error(ExitCode::internal, "HDF5 could not finish a file in memory");
   image_->file.close();
   const void* data = image_->taken.data;
-  const std::string line = trailer(kind_, data, bytes);
-  AtomicFile file(path, bytes + line.size());
-  file.write(data, bytes);
+  AtomicFile file(path, bytes + trailer_bytes);
+  std::string line;
+  parallel_blocks(2, 1, [&](Index task, Index, Index) {
+    if (task == 0) file.write(data, bytes);
+    else line = trailer(kind_, data, bytes);
+  });
   file.write(line);
   file.commit(previous);
   return bytes + line.size();

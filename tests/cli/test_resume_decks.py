@@ -102,7 +102,7 @@ def main():
     parser.add_argument("decks", nargs="*")
     parser.add_argument("--whole", action="store_true")
     parser.add_argument("--seed", type=int, default=1)
-    args = parser.parse_args()
+    args = parser.parse_intermixed_args()
     found = sorted(p.relative_to(ROOT).as_posix() for p in (ROOT / "decks").rglob("*.yaml"))
     decks = [Path(d).resolve().relative_to(ROOT).as_posix() for d in args.decks] or found
     unknown = [d for d in [*SETTINGS, *(deck for deck, _ in ALSO)] if d not in found]

@@ -4,10 +4,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "output/pvd.h"
 #include "output/run_folder.h"
 #include "temporary_folder.h"
@@ -61,6 +65,36 @@ TEST_SUITE("output") {
     write_file_atomically(folder / "a.txt", large);
     CHECK(read_file(folder / "a.txt") == large);
     CHECK_THROWS_AS(read_file(folder / "a.txt", 1000), IoError);
+  }
+
+  TEST_CASE("large arrays go to the disk as they are, at every place in memory and in the file") {
+    const test::TemporaryFolder folder;
+    constexpr std::size_t page = 4096;
+    const std::size_t bytes = (std::size_t{6} << 20) + 123;
+    std::vector<std::uint64_t> random(bytes / 8 + 2 * page / 8);
+    for (std::size_t k = 0; k < random.size(); ++k) random[k] = random_bits(5, k);
+    const auto* first = reinterpret_cast<const char*>(random.data());
+    const char* whole_page = first + (page - reinterpret_cast<std::uintptr_t>(first) % page) % page;
+    for (const char* from : {whole_page, whole_page + 8})
+      for (const std::string& before : {std::string(), std::string(page, 'b'), std::string("line\n")}) {
+        AtomicFile file(folder / "a");
+        file.write(before);
+        file.write(from, bytes);
+        file.write("end\n");
+        file.commit();
+        CHECK(read_file(folder / "a") == before + std::string(from, bytes) + "end\n");
+      }
+    // A disk that is full within whole pages and between them.
+    for (const rlim_t limit : {rlim_t{5} << 20, (rlim_t{5} << 20) + 77})
+      CHECK(with_file_limit(limit, [&] {
+              const std::string what = io_failure([&] {
+                AtomicFile file(folder / "b", bytes);
+                file.write(whole_page, bytes);
+                file.commit();
+              });
+              return what.find("cannot write (6291579 bytes needed)") != std::string::npos && !fs::exists(folder / "b") ? 7 : 1;
+            }) == 7);
+    CHECK(folder.entries() == 1);
   }
 
   TEST_CASE("failures name the path, the bytes and the system's words") {
