@@ -17,27 +17,28 @@ namespace {
 
 std::string point_text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z()); }
 
-// A body's particle inside the shape of another body of the same phase, deeper than a quarter of the spacing.
+// A body's particle inside the shape of another body of the same phase, or of a solid, deeper than a quarter of the spacing.
 template <int Dim>
-void check_bodies_overlap(const World<Dim>& world, const std::string& phase, Diagnostics& found) {
+void check_bodies_overlap(const World<Dim>& world, const ParticleSet<Dim>& set, Diagnostics& found) {
   const Model& model = world.model();
-  const ParticleSet<Dim>* set = world.find(phase);
-  if (!set || model.bodies.size() < 2) return;
-  const auto& x = set->vector(fields::position);
-  const auto& part = set->tag(fields::part);
+  if (model.bodies.size() < 2) return;
+  const auto& x = set.vector(fields::position);
+  const auto& part = set.tag(fields::part);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (const MaterialSpec* m = model.material(model.bodies[b].material); !m || m->phase() != phase) continue;
+    const MaterialSpec* m = model.material(model.bodies[b].material);
+    if (!m || (m->phase() != set.phase() && m->phase() != "solid")) continue;
+    const bool same = m->phase() == set.phase();
     const Aabb box = model.bodies[b].shape->box();
     std::vector<Index> inside(model.bodies.size(), 0);
     Vec3 example = Vec3::Zero();
-    for (Index i = 0; i < set->size(); ++i) {
+    for (Index i = 0; i < set.size(); ++i) {
       const auto other = static_cast<std::size_t>(part[i]);
       const Vec3 at = to_space<Dim>(x[i]);
-      if (other >= b || !box.contains(at)) continue;
-      if (model.bodies[b].shape->signed_distance(at) > -0.25 * model.resolution) continue;
+      if ((same && other >= b) || !box.contains(at)) continue;  // two of one phase are compared once
+      if (model.bodies[b].shape->signed_distance(at) > -0.25 * set.spacing()) continue;
       if (inside[other]++ == 0) example = at;
     }
-    for (std::size_t other = 0; other < b; ++other)
+    for (std::size_t other = 0; other < model.bodies.size(); ++other)
       if (inside[other] > 0) {
         const std::string path = fmt::format("bodies[{}].shape", b);
         found.error("E120", model.place_of(path), path,
@@ -48,29 +49,30 @@ void check_bodies_overlap(const World<Dim>& world, const std::string& phase, Dia
   }
 }
 
-// Water or soil closer to a wall particle than half a spacing starts with a burst.
+// What moves and starts closer to a wall particle than half a spacing starts with a burst. What is clamped does not move.
 template <int Dim>
-void check_in_walls(World<Dim>& world, const std::string& phase, Diagnostics& found) {
-  const ParticleSet<Dim>*set = world.find(phase), *walls = world.find("walls");
-  if (!set || !walls || walls->size() == 0) return;
+void check_in_walls(World<Dim>& world, const ParticleSet<Dim>& set, Diagnostics& found) {
+  const ParticleSet<Dim>* walls = world.find("walls");
+  if (!walls || walls->size() == 0) return;
   const Model& model = world.model();
   CellGrid<Dim> grid;
   const auto& y = walls->vector(fields::position);
   const auto frame = FixedPoint<Dim>::fit(world.domain_lo(), world.domain_hi(), support_radius(model));
   grid.build({y.data(), static_cast<std::size_t>(y.size())}, frame, model.resolution);
-  const auto& x = set->vector(fields::position);
+  const auto& x = set.vector(fields::position);
   struct Clash {
     Index count = 0, body = -1, wall = -1;
     Vec3 at = Vec3::Zero();
   } clash;
-  for (Index i = 0; i < set->size(); ++i) {
+  for (Index i = 0; i < set.size(); ++i) {
+    if (set.has(fields::clamp) && set.tag(fields::clamp)[i] >= 0) continue;
     bool close = false;
-    grid.for_each_in_reach(x[i], 0.45 * model.resolution, [&](Index j, double) {
+    grid.for_each_in_reach(x[i], 0.45 * set.spacing(), [&](Index j, double) {
       if (clash.count == 0 && !close) clash.wall = walls->tag(fields::part)[j];
       close = true;
     });
     if (close && clash.count++ == 0) {
-      clash.body = set->tag(fields::part)[i];
+      clash.body = set.tag(fields::part)[i];
       clash.at = to_space<Dim>(x[i]);
     }
   }
@@ -86,11 +88,11 @@ void check_in_walls(World<Dim>& world, const std::string& phase, Diagnostics& fo
 template <int Dim>
 void check_lengths(const World<Dim>& world, Diagnostics& found) {
   const Model& model = world.model();
-  const double dp = model.resolution;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
     if (body.shape->type != "box") continue;
     const Aabb box = body.shape->box();
+    const double dp = body.spacing.value_or(model.resolution);
     for (int k = 0; k < 3; ++k) {
       if (k == 1 && Dim == 2) continue;
       const double cells = (box.hi[k] - box.lo[k]) / dp;
@@ -165,9 +167,10 @@ template <int Dim>
 void check_scene(const Scene<Dim>& scene, Diagnostics& found) {
   World<Dim>& world = *scene.world;
   check_shapes(world.model(), found);
-  for (const char* phase : {"water", "soil"}) {
-    check_bodies_overlap(world, phase, found);
-    check_in_walls(world, phase, found);
+  for (const auto& set : world.sets()) {
+    if (set->phase() == "wall") continue;
+    check_bodies_overlap(world, *set, found);
+    check_in_walls(world, *set, found);
   }
   check_coupling(world, found);
   check_lengths(world, found);

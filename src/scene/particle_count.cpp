@@ -5,6 +5,7 @@
 #include "materials/solid.h"
 #include "relax/pore_water.h"
 #include "scene/build.h"
+#include "scene/skin.h"
 
 namespace sphgeo {
 namespace {
@@ -29,6 +30,10 @@ ParticleCounts expected_particles(const Model& model) {
       add(counts, m->phase() == "solid" ? solid_set_of(model, k) : m->phase(),
           shares[k] * estimate_fill(*b.shape, b.spacing.value_or(model.resolution), model.dimension, {}));
   }
+  if (has_skin(model))
+    for (const Body& b : model.bodies)
+      if (solid_of(model, b) && b.shape)
+        add(counts, "skin", estimate_layers(*b.shape, b.spacing.value_or(model.resolution), model.dimension, skin_depth(model), LayerSide::inside));
   const Placement placement{model.resolution, support_radius(model), model.dimension};
   for (const auto& b : model.boundaries)
     if (const auto* wall = dynamic_cast<const WallBoundary*>(b.get())) add(counts, "walls", wall->expected_points(placement));

@@ -8,13 +8,19 @@
 #include "materials/solid.h"
 
 namespace sphgeo {
-namespace {
-
-bool meets_something(const Model& model) {
+bool has_skin(const Model& model) {
   const auto solids = std::count_if(model.bodies.begin(), model.bodies.end(), [&](const Body& b) { return solid_of(model, b) != nullptr; });
   const bool folds = std::any_of(model.bodies.begin(), model.bodies.end(), [](const Body& b) { return b.self_contact; });
   return solids > 0 && (solids < std::ssize(model.bodies) || solids > 1 || folds || !model.boundaries.empty());
 }
+
+double skin_depth(const Model& model) {
+  double depth = support_radius(model);
+  for (const double spacing : solid_spacings(model)) depth = std::max(depth, 2 * model.numerics.h_factor_solid.value_or(1.15) * spacing);
+  return depth;
+}
+
+namespace {
 
 /// The solids of the boundaries as they are at t = 0.
 std::vector<std::shared_ptr<const Shape>> wall_solids(const Model& model, int dimension) {
@@ -64,7 +70,7 @@ void follow(ParticleSet<Dim>& skin, const ParticleSet<Dim>& solids, std::int32_t
 
 template <int Dim>
 void add_skin(Scene<Dim>& scene, const Model& model, Filling filling) {
-  if (!meets_something(model)) return;
+  if (!has_skin(model)) return;
   World<Dim>& world = *scene.world;
   double h = 0, spacing = 0;
   for (const auto& set : world.sets())
@@ -78,7 +84,7 @@ void add_skin(Scene<Dim>& scene, const Model& model, Filling filling) {
                              &fields::source_set, &fields::reference_volume})
     skin.require(*f);
   if (filling == Filling::none) return;
-  const double depth = std::max(support_radius(model), 2 * h);
+  const double depth = skin_depth(model);
   std::int32_t number = 0;
   for (const auto& set : world.sets())
     if (set->phase() == "solid") follow(skin, *set, number++, model, depth);

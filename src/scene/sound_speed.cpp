@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "materials/solid.h"
 #include "materials/water.h"
 #include "scene/build.h"
 
@@ -42,6 +43,8 @@ SoundSpeed water_sound_speed(const Model& model, const Aabb& water, const Aabb& 
   for (const Body& b : model.bodies) {
     if (!b.shape) continue;
     const Aabb box = b.shape->box();
+    if (const double fall = box.hi.z() - everything.lo.z(); g > 0 && fall > 0 && std::isfinite(fall) && solid_of(model, b))
+      best.offer(std::sqrt(2 * g * fall), fmt::format("the speed sqrt(2 g H) that body '{}' can fall with, for its height H = {:.4g} m above the lowest point of the scene", b.name, fall));
     for (int corner = 0; corner < 9; ++corner) {
       Vec3 at = 0.5 * (box.lo + box.hi);
       if (corner < 8)

@@ -94,6 +94,22 @@ TEST_SUITE("scene") {
     CHECK(findings<3>(left + body("right", "{type: sphere, center: [0.25, 0.1, 0.15], radius: 0.1}")) == Ids{"E120"});
   }
 
+  TEST_CASE("water in a solid, solids in each other and in walls, and keys that only solids have") {
+    const std::string rock = ", max_speed: 5}, {name: rock, type: rigid, density: 2000}, {name: rubber, type: elastic, density: 1000, youngs_modulus: 1e6";
+    const auto solid = [](const std::string& name, const std::string& shape, const std::string& more = "") {
+      return "  - {name: " + name + ", material: rubber, shape: " + shape + more + "}\n";
+    };
+    const std::string left = "bodies:\n" + solid("left", "{type: box, min: [0, 0, 0], max: [0.5, 0.2, 0.3]}");
+    CHECK(findings(left + solid("right", "{type: box, min: [0.5, 0, 0], max: [1, 0.2, 0.3]}"), rock).empty());
+    CHECK(findings(left + solid("right", "{type: box, min: [0.4, 0, 0], max: [1, 0.2, 0.3]}"), rock) == Ids{"E120"});
+    CHECK(findings(left + body("pool", "{type: box, min: [0.4, 0, 0], max: [1, 0.2, 0.3]}"), rock) == Ids{"E120"});
+    const std::string floor = "boundaries: [{name: floor, type: wall, shape: {type: box, min: [-1, 0, -0.2], max: [1, 1, 0.1]}}]\n";
+    CHECK(findings(left + floor, rock) == Ids{"E121"});
+    const std::string foot = "bodies:\n" + solid("plate", "{type: box, min: [0, 0, 0], max: [0.2, 0.2, 0.3]}", ", clamped: [{shape: {type: half_space, point: [0, 0, 0.1]}}]");
+    CHECK(findings(foot + floor, rock).empty());
+    CHECK(findings("bodies:\n" + body("pool", "{type: box, min: [0, 0, 0], max: [0.5, 0.2, 0.3]}", ", spacing: 0.05, self_contact: true"), rock) == Ids{"E119", "E119"});
+  }
+
   TEST_CASE("water in a wall is found") {
     CHECK(findings(pool + "boundaries: [{name: tank, type: tank, min: [0.1, 0, 0], max: [0.5, 0.2, 0.5]}]\n") == Ids{"E121"});
     CHECK(findings(pool + tank.substr(0, tank.size() - 2) +

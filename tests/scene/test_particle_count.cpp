@@ -39,6 +39,14 @@ TEST_CASE("particles are counted to a few percent without placing them") {
   compare<3>(read_deck_text(scene_2d, {"dimension=3"}));
 }
 
+TEST_CASE("solids of their own spacing and their skin are counted too") {
+  std::string scene = scene_2d;
+  scene.replace(scene.find("type: water}]"), 13, "type: water}, {name: rock, type: rigid, density: 2500}]");
+  scene.insert(scene.find("boundaries:"), "  - {name: boulder, material: rock, spacing: resolution/2, shape: {type: sphere, center: [1.0, 0.2, 1.1], radius: 0.12}}\n");
+  compare<2>(read_deck_text(scene));
+  compare<3>(read_deck_text(scene, {"dimension=3"}));
+}
+
 TEST_CASE("a tank without a body besides is counted exactly") {
   for (const char* dimension : {"dimension=2", "dimension=3"}) {
     const Model model = read_deck_text(
