@@ -22,6 +22,7 @@ void pack_walls(World<Dim>& world, const std::string& name = "walls") {
   const auto& n = walls.vector(fields::normal);
   const auto& no_slip = walls.scalar(fields::no_slip);
   const auto& x = walls.vector(fields::position);
+  const auto* corner = walls.has(fields::corner) ? &walls.scalar(fields::corner) : nullptr;  // null: no soil, or the skin of solids
   world.with_pair_precision([&](auto number) {
     using T = decltype(number);
     auto& first = world.records(name, 0).template get<T>();
@@ -31,6 +32,7 @@ void pack_walls(World<Dim>& world, const std::string& name = "walls") {
       T* two = second[i] - record_size;  // slots of the second record count on from the first
       one[wall_slot::volume] = static_cast<T>(own_volume ? (*own_volume)[i] : volume);
       one[wall_slot::no_slip] = static_cast<T>(no_slip[i]);
+      two[wall_slot::face] = static_cast<T>(corner ? 1 - (*corner)[i] * (1 - no_slip[i]) : 1.0);
       const Vec<Dim> g = world.pull(x[i]);
       two[wall_slot::push] = static_cast<T>(std::max(0.0, (a ? Vec<Dim>((*a)[i] - g) : Vec<Dim>(-g)).dot(n[i])));
       two[wall_slot::yields] = static_cast<T>(yields);

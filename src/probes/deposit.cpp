@@ -62,15 +62,17 @@ struct DepositProbe final : Probe {
       bins[k].height = std::max(bins[k].height, d.z() + 0.5 * dp);
       bins[k].reach = std::max(bins[k].reach, at + 0.5 * dp);
     }
-    std::size_t connected = 0;
+    // Between planes of symmetry their walls cut the kernel: the heap begins with the first ring or the second.
+    const std::size_t begin = bins.size() > 1 && !std::isfinite(bins[0].height) ? 1 : 0;
+    std::size_t connected = begin;
     while (connected < bins.size() && std::isfinite(bins[connected].height)) ++connected;
-    if (connected == 0) return;
-    std::size_t top = 0;
-    for (std::size_t k = 0; k < connected; ++k)
+    if (connected == begin) return;
+    std::size_t top = begin;
+    for (std::size_t k = begin; k < connected; ++k)
       if (bins[k].height > bins[top].height) top = k;
     out[0] = bins[connected - 1].reach;
     out[1] = bins[top].height;
-    out[2] = bins[0].height;
+    out[2] = bins[begin].height;
     double n = 0, sx = 0, sz = 0, sxx = 0, sxz = 0;
     for (std::size_t k = top; k < connected; ++k) {
       const double z = bins[k].height, at = (static_cast<double>(k) + 0.5) * width;

@@ -8,6 +8,13 @@
 #include "sph/cell_grid.h"
 
 namespace sphgeo {
+
+bool inside_any(const std::vector<const WallPart*>& parts, const WallPart* but, const Vec3& at, double deeper_than) {
+  return std::any_of(parts.begin(), parts.end(), [&](const WallPart* other) {
+    return other != but && other->solid->box().contains(at) && other->solid->signed_distance(at) < -deeper_than;
+  });
+}
+
 namespace {
 
 /// Where the ray from a wall particle along its normal leaves its own solid; empty when it does not within
@@ -16,12 +23,6 @@ std::optional<Vec3> surface_ahead(const Shape& solid, const WallPoint& p, double
   for (double s = 0.25 * dp; s <= reach + dp; s += 0.25 * dp)
     if (const Vec3 at = p.position + s * p.normal; solid.signed_distance(at) > 0) return at;
   return std::nullopt;
-}
-
-bool inside_any(const std::vector<const WallPart*>& parts, const WallPart* but, const Vec3& at, double deeper_than) {
-  return std::any_of(parts.begin(), parts.end(), [&](const WallPart* other) {
-    return other != but && other->solid->box().contains(at) && other->solid->signed_distance(at) < -deeper_than;
-  });
 }
 
 void keep_first(const std::vector<const WallPart*>& earlier, WallPart& part, double dp) {
@@ -39,7 +40,7 @@ void keep_first(const std::vector<const WallPart*>& earlier, WallPart& part, dou
 }  // namespace
 
 template <int Dim>
-void join_walls(std::vector<WallPart>& parts, double dp, double reach) {
+void join_walls(std::vector<WallPart>& parts, double dp, double reach, const Vec3& up) {
   std::vector<const WallPart*> joined;
   for (WallPart& part : parts) {
     if (!part.rests || !part.solid) continue;
@@ -82,6 +83,7 @@ void join_walls(std::vector<WallPart>& parts, double dp, double reach) {
     double nearest = 4 * reach * reach;
     Index best = -1;
     grid.for_each_in_reach(at, 2 * reach, [&](Index j, double r2) {
+      if (to_scene<Dim>(up).dot(exposed[static_cast<std::size_t>(j)] - at) > 0) r2 -= 0.01 * dp * dp;  // decides between equals
       if (r2 > nearest || (r2 == nearest && j > best)) return;
       nearest = r2;
       best = j;
@@ -92,7 +94,7 @@ void join_walls(std::vector<WallPart>& parts, double dp, double reach) {
   });
 }
 
-template void join_walls<2>(std::vector<WallPart>&, double, double);
-template void join_walls<3>(std::vector<WallPart>&, double, double);
+template void join_walls<2>(std::vector<WallPart>&, double, double, const Vec3&);
+template void join_walls<3>(std::vector<WallPart>&, double, double, const Vec3&);
 
 }  // namespace sphgeo
