@@ -84,13 +84,15 @@ struct PenetrationProbe final : Probe {
     return p;
   }
 
-  /// Distance between the outermost particles of two patches, negative when they overlap: the larger one along the
-  /// normals of both, as for convex bodies. Only what lies near one line along the normal counts.
+  /// Distance between the outermost particles of two patches, negative when they overlap: as for convex bodies the largest
+  /// of several directions: the normals of both, and the one between these.
+  /// Only what lies near one line along a direction counts.
   static double gap(const Patch& a, const Patch& b, const Vec3& point, double spacing, int dimension) {
     const Vec3 middle = 0.5 * (point + b.place);
     const double aside = 0.55 * spacing * std::sqrt(dimension - 1.0);
     double best = -std::numeric_limits<double>::infinity();
-    for (const Vec3& n : {b.normal, Vec3(-a.normal)}) {
+    for (const Vec3& n : {b.normal, Vec3(-a.normal), Vec3((b.normal - a.normal).normalized())}) {
+      if (n.isZero(0)) continue;
       const auto along = [&](const Vec3& p) { return (p - middle).dot(n); };
       const auto beside = [&](const Vec3& p) { return (p - middle - along(p) * n).norm() <= aside; };
       double low = along(point), high = along(b.place);
