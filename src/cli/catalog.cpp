@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "deck/copies.h"
 #include "deck/motion.h"
 #include "deck/model.h"
 #include "effects/effect.h"
@@ -98,7 +99,7 @@ CatalogGroup fields_group() {
 
 std::vector<CatalogGroup> catalog() {
   return {{"section", "deck sections", "The keys of the deck and of the mappings in it.",
-           {section<Model>(), section<Body>(), section<Motion>(), section<Output>(), section<Frames>(), section<Numerics>(), section<Relaxation>(), section<Expect>()}},
+           {section<Model>(), section<Body>(), section<Copies>(), section<Motion>(), section<Output>(), section<Frames>(), section<Numerics>(), section<Relaxation>(), section<Expect>()}},
           types(Registry<MaterialSpec>::get(), "materials", "What bodies are made of: entries of `materials`."),
           types(Registry<Shape>::get(), "shapes", "Regions of space, for bodies and walls."),
           types(Registry<BoundarySpec>::get(), "boundaries", "Borders of the scene: entries of `boundaries`."),

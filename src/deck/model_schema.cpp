@@ -12,6 +12,7 @@
 
 #include "core/hash.h"
 #include "core/text.h"
+#include "deck/copies.h"
 #include "deck/model.h"
 #include "deck/yaml_reader.h"
 #include "deck/yaml_writer.h"
@@ -206,6 +207,11 @@ Json json_schema() {
   Json definitions = Json::object();
   Model defaults;
   json_mapping(out, {{&schema_of<Model>(), &defaults}}, definitions);
+  // `copies` is taken in before bodies are read, and no key of theirs.
+  Copies copies;
+  Json& many = out["properties"]["bodies"]["items"]["properties"]["copies"];
+  json_mapping(many, {{&schema_of<Copies>(), &copies}}, definitions);
+  many["description"] = schema_of<Copies>().sentence();
   out["definitions"] = std::move(definitions);
   return out;
 }
