@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "core/parallel.h"
@@ -10,11 +11,28 @@
 
 namespace sphgeo {
 
+/// How far a particle is from the face of the resting clamp that holds it or is near, m: positive outside; empty if there is none.
+template <int Dim>
+std::optional<double> clamp_distance(const Body& body, const Vec<Dim>& at) {
+  std::optional<double> nearest;
+  for (const ClampedRegion& clamp : body.clamped)
+    if (!clamp.motion)
+      if (const double d = clamp.shape->signed_distance(to_space<Dim>(at)); !nearest || d < *nearest) nearest = d;
+  return nearest;
+}
+
 /// Weights that are added to those of Eq. 66. In the bulk of a lattice those see a quadratic field's gradient exactly; near a
 /// surface they see it at a point further inside, by a fifth of a spacing or two: a plate of eight layers bends as if it
 /// were a twentieth thinner. The least change (in the norm of the kernel) that makes the gradient exact for the products
 /// of two coordinates, and leaves it exact for linear fields; none where the neighbors cannot tell, as in a plate of two
-/// layers. by_target holds delta g_ij, by_source B_i^-1 delta g_ij for the forces, which stay the gradient of the energy.
+/// layers.
+///
+/// Clamps. A held particle says that there is no displacement where it is, but the strain may begin at the face of the clamp,
+/// half a spacing before it and more: a clamped plate bends as if it were a spacing longer. So a free particle sees
+/// in place of a held one the mirror image of its own displacement, as water does at a wall (Eq. 95); what is held has
+/// no strain of its own. This is one vector per particle, kept as a weight of the particle on itself.
+///
+/// by_target holds delta g_ij, by_source B_i^-1 delta g_ij for the forces, which stay the gradient of the energy.
 template <int Dim>
 PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
   constexpr int terms = Dim + Dim * (Dim + 1) / 2;
@@ -24,6 +42,8 @@ PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
   const auto& at = set.vector(fields::reference_position);
   const auto& volume = set.scalar(fields::reference_volume);
   const auto& correction = set.tensor(fields::reference_correction);
+  const auto& part = set.tag(fields::part);
+  const auto& clamp = set.tag(fields::clamp);
   const double h = set.smoothing_length();
   const Kernel<Dim> kernel(h);
   const auto monomials = [&](const Vec<Dim>& r) {  // of the way to the neighbor
@@ -54,6 +74,27 @@ PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
         const Vec<Dim> g = -volume[i] * kernel.dw_over_r(r.squaredNorm()) * inverse * r;
         wrong += p * g.transpose();
       });
+      const Mat<Dim> back = inverse.inverse();
+      const auto keep = [&](Index other, const Vec<Dim>& change) {
+        const Vec<Dim> changed = back * change;
+        typename PairWeights<Dim>::Entry entry{static_cast<std::uint32_t>(other), {}}, turn = entry;
+        for (int k = 0; k < Dim; ++k) {
+          entry.weight[k] = static_cast<float>(change[k]);
+          turn.weight[k] = static_cast<float>(changed[k]);
+        }
+        rows[static_cast<std::size_t>(i)].push_back(entry);
+        turned[static_cast<std::size_t>(i)].push_back(turn);
+      };
+      const Body& body = world.model().bodies[static_cast<std::size_t>(part[i])];
+      if (clamp[i] < 0 && !body.clamped.empty()) {
+        Vec<Dim> mirrored = Vec<Dim>::Zero();
+        const double own = std::max(clamp_distance<Dim>(body, at[i]).value_or(0), 0.499 * set.spacing());
+        for_neighbors([&](Index j, const Vec<Dim>& r, double, const Terms&) {
+          if (clamp[j] < 0 || body.clamped[static_cast<std::size_t>(clamp[j])].motion) return;
+          mirrored += std::max(0.0, -clamp_distance<Dim>(body, at[j]).value_or(0)) / own * (-volume[i] * kernel.dw_over_r(r.squaredNorm()) * inverse * r);
+        });
+        if (mirrored.norm() > 0) keep(i, mirrored);
+      }
       wrong.template topRows<Dim>().setZero();  // what B0 makes right already
       if (wrong.norm() * h < 1e-6) continue;
       const Eigen::SelfAdjointEigenSolver<Moments> axes(moments);
@@ -61,17 +102,7 @@ PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
       for (int n = 0; n < terms; ++n) inverse_of[n] = inverse_of[n] > 1e-5 * axes.eigenvalues()[terms - 1] ? 1 / inverse_of[n] : 0;
       const Eigen::Matrix<double, terms, Dim> factor = -axes.eigenvectors() * inverse_of.asDiagonal() * axes.eigenvectors().transpose() * wrong;
       if ((moments * factor + wrong).norm() > 1e-6 * wrong.norm()) continue;
-      const Mat<Dim> back = inverse.inverse();
-      for_neighbors([&](Index j, const Vec<Dim>&, double w, const Terms& p) {
-        const Vec<Dim> change = w * (factor.transpose() * p), changed = back * change;
-        typename PairWeights<Dim>::Entry entry{static_cast<std::uint32_t>(j), {}}, turn{static_cast<std::uint32_t>(j), {}};
-        for (int k = 0; k < Dim; ++k) {
-          entry.weight[k] = static_cast<float>(change[k]);
-          turn.weight[k] = static_cast<float>(changed[k]);
-        }
-        rows[static_cast<std::size_t>(i)].push_back(entry);
-        turned[static_cast<std::size_t>(i)].push_back(turn);
-      });
+      for_neighbors([&](Index j, const Vec<Dim>&, double w, const Terms& p) { keep(j, w * (factor.transpose() * p)); });
     }
   });
   PairWeights<Dim> weights;
@@ -88,7 +119,7 @@ PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
     for (auto entry : turned[i]) {
       const std::size_t j = entry.other;
       entry.other = static_cast<std::uint32_t>(i);
-      sources[j].push_back(entry);
+      if (j != i) sources[j].push_back(entry);
       // The particle itself bears minus the sum of its weights.
       for (float& w : entry.weight) w = -w;
       sources[i].push_back(entry);

@@ -49,6 +49,10 @@ struct SolidParts {
   const SolidPart& operator[](std::int32_t part) const { return of[static_cast<std::size_t>(part)]; }
 };
 
+/// Whether what is clamped bears no strain: the quadratic gradient has the clamp's face in the free particles.
+template <int Dim>
+bool clamps_at_face(const World<Dim>& world) { return world.model().numerics.solid_gradient == "quadratic"; }
+
 /// Whether a set has solids with an artificial viscosity.
 template <int Dim>
 bool viscous_solids(const World<Dim>& world, const std::string& set) {
@@ -198,6 +202,9 @@ void Deformation<Dim>::gather_gradients(World<Dim>& world, F&& finish) const {
   const ParticleSet<Dim>& set = world.set(set_);
   const auto& volume = set.scalar(fields::reference_volume);
   const auto& correction = set.tensor(fields::reference_correction);
+  const auto& x = set.vector(fields::position);
+  const auto& reference = set.vector(fields::reference_position);
+  const auto& part = set.tag(fields::part);
   const DisplacementGradient<Dim> pair{Kernel<Dim>(set.smoothing_length())};
   world.with_pair_precision([&](auto number) {
     using T = decltype(number);
@@ -209,8 +216,11 @@ void Deformation<Dim>::gather_gradients(World<Dim>& world, F&& finish) const {
       g = (volume[i] * g * to_matrix<Dim>(correction[i])).eval();  // one volume for all pairs of a body
       if (!more.empty())
         more.by_target.for_row(i, [&](Index j, const float* weight) {
+          // A weight on itself stands for a clamp near by: see quadratic_weights().
+          Vec<Dim> mirrored = Vec<Dim>::Zero();
+          if (j == i) mirrored = frame(part[i]).rotation.transpose() * (reference[i] - x[i]);
           for (int k = 0; k < Dim; ++k) {
-            const double dw = static_cast<double>(records[j][solid_slot::displacement + k]) - static_cast<double>(records[i][solid_slot::displacement + k]);
+            const double dw = j == i ? mirrored[k] : static_cast<double>(records[j][solid_slot::displacement + k]) - static_cast<double>(records[i][solid_slot::displacement + k]);
             for (int l = 0; l < Dim; ++l) g(k, l) += dw * static_cast<double>(weight[l]);
           }
         });

@@ -31,6 +31,8 @@ class SolidPredict final : public Effect<Dim> {
     const SolidParts parts(world);
     const auto& part = set.tag(fields::part);
     const auto& correction = set.tensor(fields::reference_correction);
+    const auto& clamp = set.tag(fields::clamp);
+    const bool at_face = clamps_at_face(world);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       T* record[2] = {world.records(set_, 1).template get<T>()[0], nullptr};
@@ -38,7 +40,7 @@ class SolidPredict final : public Effect<Dim> {
       deformation_.gather_gradients(world, [&](Index i, const Mat<Dim>& g) {
         const SolidPart& p = parts[part[i]];
         Mat<Dim> pb = Mat<Dim>::Zero();
-        if (p.elastic) {
+        if (p.elastic && !(at_face && clamp[i] >= 0)) {
           const Mat3 grad = to_space_tensor<Dim>(g);
           // P = F S with F = R (I + g).
           const Mat3 s = second_piola(grad, p.law);

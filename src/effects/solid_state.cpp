@@ -31,6 +31,8 @@ class SolidState final : public Effect<Dim> {
     const auto& reference = set.vector(fields::reference_position);
     const auto& volume0 = set.scalar(fields::reference_volume);
     const auto& part = set.tag(fields::part);
+    const auto& clamp = set.tag(fields::clamp);
+    const bool at_face = clamps_at_face(world);
     auto& stress = set.tensor(fields::cauchy_stress);
     auto& von_mises = set.scalar(fields::von_mises);
     auto& energy = set.scalar(fields::strain_energy);
@@ -46,7 +48,7 @@ class SolidState final : public Effect<Dim> {
       stress[i].setZero();
       von_mises[i] = energy[i] = 0;
       volume[i] = volume0[i];
-      if (!p.elastic) return;
+      if (!p.elastic || (at_face && clamp[i] >= 0)) return;
       const Mat3 grad = to_space_tensor<Dim>(g);
       const Mat3 f = to_space_tensor<Dim>(deformation_.frame(part[i]).rotation) * (Mat3::Identity() + grad) + out_of_plane();
       const double jacobian = 1 + volume_change(grad);

@@ -70,10 +70,11 @@ inline constexpr FieldSpec reference_correction{"reference_correction", tensor, 
 inline constexpr FieldSpec mean_velocity{"mean_velocity", vector, state, unit::speed, "velocity, averaged over the steps of solids in the last acoustic step"};
 inline constexpr FieldSpec source{"source", tag, reference, unit::none, "id of the particle of a solid that a particle of the skin follows"};
 inline constexpr FieldSpec source_set{"source_set", tag, reference, unit::none, "number of that solid's set"};
-inline constexpr FieldSpec water_force{"water_force", vector, derived, unit::force, "force of water on a particle of the skin"};
-inline constexpr FieldSpec soil_force{"soil_force", vector, derived, unit::force, "force of soil on a particle of the skin"};
-inline constexpr FieldSpec contact_force{"contact_force", vector, derived, unit::force, "force of other solids and of walls on a particle of the skin"};
-inline constexpr FieldSpec contact_energy{"contact_energy", scalar, derived, unit::energy, "energy stored in the contacts of a particle of the skin; J per metre of depth in 2D"};
+// Saved: a probe that is due right after a run went on reads those of the step before.
+inline constexpr FieldSpec water_force{"water_force", vector, state, unit::force, "force of water on a particle of the skin"};
+inline constexpr FieldSpec soil_force{"soil_force", vector, state, unit::force, "force of soil on a particle of the skin"};
+inline constexpr FieldSpec contact_force{"contact_force", vector, state, unit::force, "force of other solids and of walls on a particle of the skin"};
+inline constexpr FieldSpec contact_energy{"contact_energy", scalar, state, unit::energy, "energy stored in the contacts of a particle of the skin; J per metre of depth in 2D"};
 inline constexpr FieldSpec fluid_force{"fluid_force", vector, derived, unit::force, "force of water and soil on a particle of a solid"};
 inline constexpr FieldSpec cauchy_stress{"cauchy_stress", tensor, derived, unit::pressure,
                                          "stress of a solid, tension positive: xx, yy, zz, xy, yz, xz"};
