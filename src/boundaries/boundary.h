@@ -26,6 +26,7 @@ struct Placement {
 struct WallPoint {
   Vec3 position;
   Vec3 normal;
+  bool corner = false;  ///< behind two walls at once, see mark_corners
 };
 
 /// A side of a boundary that the deck left without a wall, closed by points one spacing apart.

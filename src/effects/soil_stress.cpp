@@ -41,7 +41,7 @@ struct GradientPair {
 
 template <int Dim>
 struct WallGradientPair {
-  Kernel<Dim> kernel;
+  SoilWallPair<Dim> wall;
   template <class T>
   void operator()(typename GradientSums<Dim>::template Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T, 2>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
@@ -49,7 +49,7 @@ struct WallGradientPair {
     // it, which would count as no change at all if the whole of r were used here.
     const LaneVec<Dim, T> n = j.vec(wall_slot::normal);
     const T r_n = dot(r, n);
-    GradientSums<Dim>::add(sum, SoilWallPair<Dim>::mirrored(i, j), r_n * n, select(r_n > T(0), kernel.dw_over_r(r2) * j[wall_slot::volume], T(0)));
+    GradientSums<Dim>::add(sum, SoilWallPair<Dim>::mirrored(i, j), r_n * n, wall.slope(j, r_n, r2));
   }
 };
 
@@ -117,7 +117,7 @@ class SoilStress final : public Effect<Dim> {
         gather_block<GradientSums<Dim>::template Sums>(
             *wall_list, b, records,
             with(world.records("walls", 0).template get<T>(), world.records("walls", 1).template get<T>()),
-            WallGradientPair<Dim>{kernel}, [&](Index i, const Sums& s) { add(at(i), s); });
+            WallGradientPair<Dim>{SoilWallPair<Dim>(world, *soil_)}, [&](Index i, const Sums& s) { add(at(i), s); });
       finish_block(world, parts, sums.data(), first, end - first);
     });
   }

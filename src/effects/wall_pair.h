@@ -12,6 +12,7 @@ inline constexpr int volume = 3;
 inline constexpr int velocity = 4;
 inline constexpr int no_slip = 7;  ///< 1 = no slip, 0 = free slip
 inline constexpr int normal = 8;   ///< n, outward from the solid
+inline constexpr int face = 11;    ///< for soil: 0 on a smooth wall in a concave corner, elsewhere 1
 inline constexpr int push = 12;    ///< max[0, (dv/dt - g) . n] of the wall
 inline constexpr int weight = 13;  ///< -g . n
 }  // namespace wall_slot

@@ -20,6 +20,7 @@ void pack_walls(World<Dim>& world) {
   const auto& n = walls.vector(fields::normal);
   const auto& no_slip = walls.scalar(fields::no_slip);
   const auto& x = walls.vector(fields::position);
+  const auto* corner = walls.has(fields::corner) ? &walls.scalar(fields::corner) : nullptr;  // null: no soil
   world.with_pair_precision([&](auto number) {
     using T = decltype(number);
     auto& first = world.records("walls", 0).template get<T>();
@@ -29,6 +30,7 @@ void pack_walls(World<Dim>& world) {
       T* two = second[i] - record_size;  // slots of the second record count on from the first
       one[wall_slot::volume] = static_cast<T>(volume);
       one[wall_slot::no_slip] = static_cast<T>(no_slip[i]);
+      if (corner) two[wall_slot::face] = static_cast<T>(1 - (*corner)[i] * (1 - no_slip[i]));
       const Vec<Dim> g = world.pull(x[i]);
       two[wall_slot::push] = static_cast<T>(std::max(0.0, (a ? Vec<Dim>((*a)[i] - g) : Vec<Dim>(-g)).dot(n[i])));
       two[wall_slot::weight] = static_cast<T>(-g.dot(n[i]));

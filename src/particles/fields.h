@@ -27,6 +27,7 @@ inline constexpr FieldSpec normal{"normal", vector, state, unit::none, "outward 
 inline constexpr FieldSpec reference_position{"reference_position", vector, reference, unit::length, "place at t = 0"};
 inline constexpr FieldSpec reference_normal{"reference_normal", vector, reference, unit::none, "normal at t = 0"};
 inline constexpr FieldSpec no_slip{"no_slip", scalar, reference, unit::none, "1 where water sticks to the wall, 0 where it slides"};
+inline constexpr FieldSpec corner{"corner", scalar, reference, unit::none, "1 behind two walls at once, in the concave corner between them"};
 inline constexpr FieldSpec wall_force{"wall_force", vector, derived, unit::force, "force of water and soil on a wall particle"};
 
 // Soil.
@@ -65,7 +66,7 @@ inline constexpr FieldSpec drag_acceleration{"drag_acceleration", vector, state,
 inline constexpr const FieldSpec* all[] = {&id, &part, &position, &velocity, &acceleration,
                                            &acceleration_sum, &mass,
                                            &density, &density_rate, &pressure, &volume, &surface,
-                                           &normal, &reference_position, &reference_normal, &no_slip, &wall_force,
+                                           &normal, &reference_position, &reference_normal, &no_slip, &corner, &wall_force,
                                            &volume_fraction, &volume_fraction_rate, &initial_volume_fraction, &stress, &crowding, &gradient_correction,
                                            &plastic_strain, &plastic_work, &water_acceleration, &pore_pressure, &saturation,
                                            &water_fraction, &soil_sum, &inverse_soil_mass, &drag_linear, &drag_quadratic,

@@ -13,6 +13,7 @@
 #include "relax/pore_water.h"
 #include "scene/join_walls.h"
 #include "scene/soil.h"
+#include "scene/wall_corners.h"
 
 namespace sphgeo {
 
@@ -146,6 +147,7 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
                    : has_soil(model) ? std::max(water_smoothing_length(model), soil_smoothing_length(model)) : water_smoothing_length(model);
   ParticleSet<Dim>& set = scene.world->add_set("walls", "wall", dp, h, moves);
   for (const FieldSpec* f : {&fields::normal, &fields::no_slip}) set.require(*f);
+  if (has_soil(model)) set.require(fields::corner);
   if (moves)
     for (const FieldSpec* f : {&fields::acceleration, &fields::reference_position, &fields::reference_normal}) set.require(*f);
   if (fill == Filling::none) return;
@@ -162,6 +164,7 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
     }
   }
   join_walls<Dim>(parts, dp, support_radius(model));
+  if (has_soil(model)) mark_corners<Dim>(parts, dp, support_radius(model));
   for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
     const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
     const std::vector<WallPoint>& points = parts[b].points;
@@ -178,6 +181,7 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
       }
       set.vector(fields::position)[i] = to_scene<Dim>(wall.motion ? wall.motion->position(points[k].position, 0) : points[k].position);
       set.vector(fields::normal)[i] = to_scene<Dim>(wall.motion ? wall.motion->direction(points[k].normal, 0) : points[k].normal);
+      if (set.has(fields::corner)) set.scalar(fields::corner)[i] = points[k].corner ? 1.0 : 0.0;
       set.scalar(fields::no_slip)[i] = wall.slip_kind() == Slip::no_slip ? 1.0 : 0.0;
     }
   }

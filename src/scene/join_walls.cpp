@@ -8,6 +8,13 @@
 #include "sph/cell_grid.h"
 
 namespace sphgeo {
+
+bool inside_any(const std::vector<const WallPart*>& parts, const WallPart* but, const Vec3& at, double deeper_than) {
+  return std::any_of(parts.begin(), parts.end(), [&](const WallPart* other) {
+    return other != but && other->solid->box().contains(at) && other->solid->signed_distance(at) < -deeper_than;
+  });
+}
+
 namespace {
 
 /// Where the ray from a wall particle along its normal leaves its own solid; empty when it does not within
@@ -16,12 +23,6 @@ std::optional<Vec3> surface_ahead(const Shape& solid, const WallPoint& p, double
   for (double s = 0.25 * dp; s <= reach + dp; s += 0.25 * dp)
     if (const Vec3 at = p.position + s * p.normal; solid.signed_distance(at) > 0) return at;
   return std::nullopt;
-}
-
-bool inside_any(const std::vector<const WallPart*>& parts, const WallPart* but, const Vec3& at, double deeper_than) {
-  return std::any_of(parts.begin(), parts.end(), [&](const WallPart* other) {
-    return other != but && other->solid->box().contains(at) && other->solid->signed_distance(at) < -deeper_than;
-  });
 }
 
 void keep_first(const std::vector<const WallPart*>& earlier, WallPart& part, double dp) {

@@ -15,6 +15,9 @@ struct WallPart {
   bool rests = true;  ///< only boundaries at rest are joined: the others part again
 };
 
+/// Whether a place lies deeper in one of the solids, but for that of `but`, than `deeper_than`.
+bool inside_any(const std::vector<const WallPart*>& parts, const WallPart* but, const Vec3& at, double deeper_than);
+
 /// Of particles where solids overlap, keeps those of the first boundary: a place that is filled twice pulls
 /// twice. Normals that would point into another solid, as at the foot of a step that stands on a floor, are
 /// turned towards the nearest surface that the fluid can reach; spacing dp and reach of the kernel in m.

@@ -1,0 +1,107 @@
+#include "scene/wall_corners.h"
+
+#include <algorithm>
+#include <array>
+
+#include "core/parallel.h"
+#include "sph/cell_grid.h"
+
+namespace sphgeo {
+namespace {
+
+/// A point of a wall's surface and the normal there.
+struct SurfacePoint {
+  Vec3 at, normal;
+};
+
+/// Outward normal of the surface of a solid that is nearest to a place; shorter than 1 where two are equally near.
+Vec3 normal_of(const Shape& solid, const Vec3& at, double dp, int dimension) {
+  const double by = 1e-3 * dp;
+  Vec3 slope = Vec3::Zero();
+  for (int k = 0; k < 3; k += dimension == 2 ? 2 : 1)
+    slope[k] = (solid.signed_distance(at + by * Vec3::Unit(k)) - solid.signed_distance(at - by * Vec3::Unit(k))) / (2 * by);
+  return slope;
+}
+
+/// Points of the surface of these walls that soil can reach: one for each particle of the first layer, and more at an edge. The
+/// normals of particles do not serve here: those that another wall covers have been turned away from their own surface.
+std::vector<SurfacePoint> surface_of(const std::vector<WallPart*>& walls, double dp, int dimension) {
+  const std::vector<const WallPart*> all(walls.begin(), walls.end());
+  std::vector<SurfacePoint> surface;
+  for (const WallPart* wall : walls)
+    for (const WallPoint& p : wall->points) {
+      if (wall->solid->signed_distance(p.position) < -dp) continue;
+      const std::size_t first = surface.size();
+      const auto look_from = [&](const Vec3& place) {
+        const Vec3 n = normal_of(*wall->solid, place, dp, dimension);
+        if (n.norm() < 0.99) return false;
+        const Vec3 at = p.position + ((place - p.position).dot(n) - wall->solid->signed_distance(place)) * n;
+        const bool known = std::any_of(surface.begin() + static_cast<std::ptrdiff_t>(first), surface.end(), [&](const SurfacePoint& s) { return s.normal.dot(n) > 0.99; });
+        if (!known && !inside_any(all, wall, at + 0.5 * dp * n, 0)) surface.push_back({at, n.normalized()});
+        return true;
+      };
+      if (look_from(p.position)) continue;
+      for (int k = 0; k < 3; k += dimension == 2 ? 2 : 1)
+        for (const double by : {-0.1 * dp, 0.1 * dp}) look_from(p.position + by * Vec3::Unit(k));
+    }
+  return surface;
+}
+
+/// Whether two pieces of surface stand in front of each other, at less than 120 degrees.
+bool enclose(const SurfacePoint& a, const SurfacePoint& b, double dp) {
+  return a.normal.dot(b.normal) < 0.5 && (b.at - a.at).dot(a.normal) > -0.25 * dp && (a.at - b.at).dot(b.normal) > -0.25 * dp;
+}
+
+template <int Dim>
+void mark(const std::vector<WallPart*>& walls, double dp, double reach) {
+  const std::vector<SurfacePoint> surface = surface_of(walls, dp, Dim);
+  if (surface.empty()) return;
+  std::vector<Vec<Dim>> at;
+  for (const SurfacePoint& s : surface) at.push_back(to_scene<Dim>(s.at));
+  Vec<Dim> lo = at.front(), hi = lo;
+  const auto extend = [&](const Vec<Dim>& x) {
+    lo = lo.cwiseMin(x);
+    hi = hi.cwiseMax(x);
+  };
+  for (const Vec<Dim>& x : at) extend(x);
+  for (const WallPart* wall : walls)
+    for (const WallPoint& p : wall->points) extend(to_scene<Dim>(p.position));
+  CellGrid<Dim> grid;
+  grid.build(at, FixedPoint<Dim>::fit(lo, hi, reach), reach);
+
+  for (WallPart* wall : walls)
+    parallel_for(static_cast<Index>(wall->points.size()), [&](Index k) {
+      WallPoint& p = wall->points[static_cast<std::size_t>(k)];
+      // Points of surface in front of which it lies not, one for each direction of the normal.
+      std::array<const SurfacePoint*, 16> seen{};
+      std::size_t count = 0;
+      grid.for_each_in_reach(to_scene<Dim>(p.position), reach + dp, [&](Index j, double) {
+        const SurfacePoint& s = surface[static_cast<std::size_t>(j)];
+        if (p.corner || (s.at - p.position).dot(s.normal) < 0.25 * dp) return;
+        bool known = false;
+        for (std::size_t n = 0; n < count; ++n) {
+          p.corner = p.corner || enclose(*seen[n], s, dp);
+          known = known || seen[n]->normal.dot(s.normal) > 0.99;
+        }
+        if (!known && count < seen.size()) seen[count++] = &s;
+      });
+    });
+}
+
+}  // namespace
+
+template <int Dim>
+void mark_corners(std::vector<WallPart>& parts, double dp, double reach) {
+  std::vector<WallPart*> at_rest;
+  for (WallPart& part : parts) {
+    if (!part.solid) continue;
+    if (part.rests) at_rest.push_back(&part);
+    else mark<Dim>({&part}, dp, reach);
+  }
+  mark<Dim>(at_rest, dp, reach);
+}
+
+template void mark_corners<2>(std::vector<WallPart>&, double, double);
+template void mark_corners<3>(std::vector<WallPart>&, double, double);
+
+}  // namespace sphgeo
