@@ -163,7 +163,8 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
       found.error("E116", model.place_of(path), path, e.what());
     }
   }
-  join_walls<Dim>(parts, dp, support_radius(model));
+  const double g = model.gravity.norm();
+  join_walls<Dim>(parts, dp, support_radius(model), has_soil(model) && g > 0 ? Vec3(-model.gravity / g) : Vec3::Zero());
   if (has_soil(model)) mark_corners<Dim>(parts, dp, support_radius(model));
   for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
     const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);

@@ -40,7 +40,7 @@ void keep_first(const std::vector<const WallPart*>& earlier, WallPart& part, dou
 }  // namespace
 
 template <int Dim>
-void join_walls(std::vector<WallPart>& parts, double dp, double reach) {
+void join_walls(std::vector<WallPart>& parts, double dp, double reach, const Vec3& up) {
   std::vector<const WallPart*> joined;
   for (WallPart& part : parts) {
     if (!part.rests || !part.solid) continue;
@@ -83,6 +83,7 @@ void join_walls(std::vector<WallPart>& parts, double dp, double reach) {
     double nearest = 4 * reach * reach;
     Index best = -1;
     grid.for_each_in_reach(at, 2 * reach, [&](Index j, double r2) {
+      if (to_scene<Dim>(up).dot(exposed[static_cast<std::size_t>(j)] - at) > 0) r2 -= 0.01 * dp * dp;  // decides between equals
       if (r2 > nearest || (r2 == nearest && j > best)) return;
       nearest = r2;
       best = j;
@@ -93,7 +94,7 @@ void join_walls(std::vector<WallPart>& parts, double dp, double reach) {
   });
 }
 
-template void join_walls<2>(std::vector<WallPart>&, double, double);
-template void join_walls<3>(std::vector<WallPart>&, double, double);
+template void join_walls<2>(std::vector<WallPart>&, double, double, const Vec3&);
+template void join_walls<3>(std::vector<WallPart>&, double, double, const Vec3&);
 
 }  // namespace sphgeo

@@ -71,6 +71,23 @@ TEST_SUITE("scene") {
     CHECK(normal_near(walls, -0.025, 0.325).dot(right) > 0.99); // the wall above the step
   }
 
+  TEST_CASE("where two walls touch along a line, their edges face the soil in the corner that can hold it") {
+    // A table beside a floor that ends where the table begins: the corner under the table is as near.
+    Rig<2> rig(R"(
+dimension: 2
+resolution: 0.05
+end_time: 1
+materials: [{name: sand, type: soil, density: 2600, volume_fraction: 0.6, youngs_modulus: 5e6, friction_angle: 30 deg}]
+bodies: [{name: heap, material: sand, shape: {type: box, min: [0.5, 0, 0], max: [1, 0.5, 0.2]}}]
+boundaries:
+  - {name: table, type: wall, shape: {type: box, min: [-0.5, -0.1, 0], max: [0.5, 0.6, 0.3]}}
+  - {name: floor, type: wall, shape: {type: box, min: [0.5, -0.1, -0.5], max: [1.5, 0.6, 0]}}
+)");
+    const Vec<2> table = normal_near(rig.walls(), 0.475, 0.025), floor = normal_near(rig.walls(), 0.525, -0.025);
+    CHECK(table.minCoeff() > 0.5);
+    CHECK(floor.minCoeff() > 0.5);
+  }
+
   TEST_CASE("boundaries that move are left as they are") {
     Rig<2> joined(scene<2>()), moved(scene<2>(", motion: {displacement: [0, 0, t]}"));
     CHECK(moved.walls().size() > joined.walls().size());
