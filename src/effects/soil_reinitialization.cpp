@@ -9,16 +9,16 @@
 namespace sphgeo {
 namespace {
 
-/// Where the soil's particles lie: number density, and for the transport its gradient and the moment.
+/// Where the soil's particles lie: number density and its gradient, and for the transport the moment.
 template <int Dim, bool Transport>
 struct SoilArrangement {
   Kernel<Dim> kernel;
 
   template <class T>
   struct Sums {
-    T number{};                               ///< sum of W V at rest
-    LaneVec<Transport ? Dim : 1, T> gradient{};  ///< sum of grad W V
-    T divergence{};                           ///< sum of r . grad W V, minus Dim in the bulk
+    T number{};                  ///< sum of W V at rest
+    LaneVec<Dim, T> gradient{};  ///< sum of grad W V
+    T divergence{};              ///< sum of r . grad W V, minus Dim in the bulk
   };
 
   template <class T, int N, int M>
@@ -26,13 +26,27 @@ struct SoilArrangement {
                   const LaneVec<Dim, T>& r, const T& r2) const {
     const T volume = j[soil_slot::volume];
     sum.number += kernel.w(r2) * volume;
-    if constexpr (Transport) {
-      const T slope = kernel.dw_over_r(r2) * volume;
-      sum.gradient += slope * r;
-      sum.divergence += slope * r2;
-    }
+    const T slope = kernel.dw_over_r(r2) * volume;
+    sum.gradient += slope * r;
+    if constexpr (Transport) sum.divergence += slope * r2;
   }
 };
+
+/// What a free surface takes from the sum of W V, per gradient of that sum [m]: of the first layer of a lattice. With it the sum tells how
+/// closely particles are packed also at a surface: within 3 % on a plane one, loose or dense, and on two layers; 15 % too little on an edge of 90 degrees.
+template <int Dim>
+double missing_per_gradient(const Kernel<Dim>& kernel, double dp) {
+  const int reach = static_cast<int>(std::ceil(kernel.support() / dp)), reach_y = Dim == 3 ? reach : 0;
+  double missing = 0, gradient = 0;
+  for (int i = -reach; i <= reach; ++i)
+    for (int j = -reach_y; j <= reach_y; ++j)
+      for (int k = 1; k <= reach; ++k) {
+        const double r2 = dp * dp * (i * i + j * j + k * k);
+        missing += kernel.w(r2);
+        gradient -= kernel.dw_over_r(r2) * dp * k;
+      }
+  return missing / gradient;
+}
 
 /// How many neighbors of a particle lie on the free surface.
 template <int Dim>
@@ -92,6 +106,7 @@ class SoilReinitialization final : public Effect<Dim> {
   void prepare(World<Dim>& world) override {
     soil_ = &world.set("soil");
     lattice_ = lattice_sums(Kernel<Dim>(soil_->smoothing_length()), soil_->spacing()).number;
+    per_gradient_ = missing_per_gradient(soil_kernel(*soil_), soil_->spacing());
   }
 
   void apply(World<Dim>& world) override {
@@ -122,10 +137,8 @@ class SoilReinitialization final : public Effect<Dim> {
       const auto keep = [&](Index i, const auto& s) {
         Around& a = around_[static_cast<std::size_t>(i)];
         a.number += s.number;
-        if constexpr (Transport) {
-          a.gradient += to_vec(s.gradient);
-          a.divergence += s.divergence;
-        }
+        a.gradient += to_vec(s.gradient);
+        if constexpr (Transport) a.divergence += s.divergence;
       };
       gather<Pair::template Sums>(world.list("soil", "soil"), records, records, pair, keep);
       if (has_walls_)
@@ -136,8 +149,10 @@ class SoilReinitialization final : public Effect<Dim> {
       auto& crowding = soil_->scalar(fields::crowding);
       const double self = Kernel<Dim>(soil_->smoothing_length()).w(0.0);
       parallel_for(soil_->size(), [&](Index i) {
-        crowding[i] = (around_[static_cast<std::size_t>(i)].number + self * rest(i)) / lattice_;
-        const double summed = n0[i] * crowding[i];
+        const Around& a = around_[static_cast<std::size_t>(i)];
+        const double sum = (a.number + self * rest(i)) / lattice_;
+        crowding[i] = std::max(sum, std::min(1.0, sum + per_gradient_ * a.gradient.norm() / lattice_));
+        const double summed = n0[i] * sum;
         // A sum that falls short is a surface or a splash: it keeps its volume fraction, up to the factor
         // by which it exceeds that at rest, as the density of water does.
         n[i] = summed + std::max(0.0, n[i] - summed) * n0[i] / n[i];
@@ -173,7 +188,7 @@ class SoilReinitialization final : public Effect<Dim> {
 
   bool has_walls_, transport_, sums_;
   ParticleSet<Dim>* soil_ = nullptr;
-  double lattice_ = 1;
+  double lattice_ = 1, per_gradient_ = 0;
   std::vector<Around> around_;
 };
 

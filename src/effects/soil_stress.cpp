@@ -133,8 +133,9 @@ class SoilStress final : public Effect<Dim> {
     const double dt = world.clock.dt_acoustic;
     // Soil that is packed closer than it was at t = 0, more than its pressure tells, meets the missing compression over the
     // time in which sound passes 20 smoothing lengths. The rates alone lose sight of it: they see the smooth part of the motion,
-    // and sand that has flowed would end 20 to 40 % denser than it started. Margin and time are chosen: slow against sound, fast against
-    // the flow.
+    // and sand that has flowed would end 20 to 40 % denser than it started. Soil that came apart loses its pressure in the same
+    // way until it is as close again: by rates alone the first compression would bring it back, wherever the grains are then.
+    // Margins and time are chosen: slow against sound, fast against the flow.
     const Field<double>* crowding = crowded_ ? &soil_->scalar(fields::crowding) : nullptr;
     const double per_time = parts.fastest / (20 * soil_->smoothing_length());
     const bool corrected = world.model().numerics.soil_velocity_gradient == "corrected";
@@ -176,10 +177,15 @@ class SoilStress final : public Effect<Dim> {
       L rates[6];
       symmetric_part(gradient, rates);
       if (crowding) {
-        L excess;
-        for (int lane = 0; lane < L::width; ++lane) excess.raw[lane] = (*crowding)[first + of(lane)] - (1 + crowding_margin);
-        excess = max(L(0.0), excess + (s[0] + s[1] + s[2]) / (L(3.0) * m.bulk));
-        for (int a = 0; a < 3; ++a) gradient[a][a] -= L(per_time / 3) * excess;
+        L packed;
+        for (int lane = 0; lane < L::width; ++lane) packed.raw[lane] = (*crowding)[first + of(lane)];
+        const L compression = -(s[0] + s[1] + s[2]) / (L(3.0) * m.bulk);
+        const L excess = max(L(0.0), packed - L(1 + crowding_margin) - compression);
+        // Soil that holds together without pressure, and soil that dilates as it flows, are looser by right.
+        const L apart = min(L(1.0), max(L(0.0), L(1 - loose_margin) - packed) * L(1 / crowding_margin));
+        const L loose = select(m.apex < L(drucker_prager::unbounded), select(m.dilation > L(0.0), L(0.0), apart), L(0.0));
+        const L closing = max(L(0.0), -(rates[0] + rates[1] + rates[2]));
+        for (int a = 0; a < 3; ++a) gradient[a][a] += L(1.0 / 3) * (loose * closing - L(per_time) * excess);
       }
       const PlasticStep<L> plastic = update_stress(s, gradient, L(dt), m);
       for (int lane = 0; lane < lanes; ++lane) {
@@ -219,6 +225,8 @@ class SoilStress final : public Effect<Dim> {
 
   // Of the sum over neighbors, by disorder alone.
   static constexpr double crowding_margin = 0.05;
+  // Of it at an edge, where it tells 0.85 of soil that is as close as at t = 0.
+  static constexpr double loose_margin = 0.15;
 
   bool has_walls_, wetted_, crowded_;
   ParticleSet<Dim>* soil_ = nullptr;
