@@ -29,13 +29,15 @@ double soil_smoothing_length(const Model& model) {
 
 namespace {
 
-/// Whether soil is all that moves: then its kernel alone decides how deep walls are.
-bool only_soil(const Model& model) {
-  return has_soil(model) && std::none_of(model.bodies.begin(), model.bodies.end(), [&](const Body& b) {
+bool has_water(const Model& model) {
+  return std::any_of(model.bodies.begin(), model.bodies.end(), [&](const Body& b) {
     const MaterialSpec* m = model.material(b.material);
     return m && m->phase() == "water";
   });
 }
+
+/// Whether there is soil and no water: then its kernel alone decides how deep walls are.
+bool only_soil(const Model& model) { return has_soil(model) && !has_water(model); }
 
 }  // namespace
 
@@ -76,11 +78,7 @@ double initial_pressure(const Body& body, const Model& model, double density, co
 template <int Dim>
 void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics& found) {
   const Water* water = find_water(model);
-  const auto of_water = [&](const Body& b) {
-    const MaterialSpec* m = model.material(b.material);
-    return m && m->phase() == "water";
-  };
-  if (!water || std::none_of(model.bodies.begin(), model.bodies.end(), of_water)) return;
+  if (!water || !has_water(model)) return;
   ParticleSet<Dim>& set = scene.world->add_set("water", "water", model.resolution, water_smoothing_length(model), true);
   set.set_constant("density", water->density);
   set.set_constant("viscosity", water->viscosity);
@@ -238,7 +236,7 @@ Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling) 
   Scene<Dim> scene;
   scene.world = std::make_unique<World<Dim>>(model);
   scene.sound = water_sound_speed(model, water_box(model), scene_box(model));
-  if (find_water(model) && !only_soil(model) && !(scene.sound.value > 0)) {
+  if (has_water(model) && !(scene.sound.value > 0)) {
     found.error("E112", model.place_of("materials"), "materials", "no speed of sound can be estimated: " + scene.sound.because,
                 "give max_speed or sound_speed of the water");
     scene.sound.value = 1;

@@ -30,6 +30,17 @@ const std::string probes =
     "  - {name: push, type: force, boundary: tank}\n"
     "  - {name: level, type: water_level, at: [0.2, 0.1, 0]}\n";
 
+// Of elastic, rigid or both kinds of solids, in what is around them.
+std::string solids(const std::string& rest) {
+  return "resolution: 0.05\nend_time: 1\nmaterials:\n  - {name: water, type: water}\n"
+         "  - {name: sand, type: soil, density: 2600, volume_fraction: 0.6, youngs_modulus: 1e6, friction: 0.5, grain_size: 0.001}\n"
+         "  - {name: rubber, type: elastic, density: 1000, youngs_modulus: 1e6}\n  - {name: rock, type: rigid, density: 2500}\nbodies:\n" + rest;
+}
+const std::string plate = "  - {name: plate, material: rubber, spacing: 0.025, shape: {type: box, min: [0.6, 0, 0], max: [0.7, 0.2, 0.4]}}\n";
+const std::string boulder = "  - {name: boulder, material: rock, shape: {type: box, min: [1, 0, 0], max: [1.2, 0.2, 0.2]}}\n";
+const std::string water = "  - {name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [0.4, 0.2, 0.3]}}\n";
+const std::string sand = "  - {name: bed, material: sand, shape: {type: box, min: [0, 0, 0], max: [0.4, 0.2, 0.3]}}\n";
+
 template <int Dim>
 Json plan_of(const std::string& deck) {
   Rig<Dim> rig("dimension: " + std::to_string(Dim) + "\n" + deck);
@@ -69,6 +80,11 @@ void compare(const std::string& name, const Json& plan) {
 TEST_SUITE("explain") {
   TEST_CASE("plan of a free body of water") { compare("free_water", plan_of<2>(head + pool)); }
   TEST_CASE("plan of a tank with probes") { compare("tank_with_probes", plan_of<2>(head + pool + tank + probes)); }
+  TEST_CASE("plan of one elastic solid alone") { compare("solid", plan_of<3>(solids(plate))); }
+  TEST_CASE("plan of an elastic and a rigid solid") { compare("solids", plan_of<3>(solids(plate + boulder))); }
+  TEST_CASE("plan of solids in water") { compare("water_solids", plan_of<2>(solids(water + plate + boulder))); }
+  TEST_CASE("plan of a boulder on soil") { compare("soil_boulder", plan_of<2>(solids(sand + boulder))); }
+  TEST_CASE("plan of everything") { compare("all_phases", plan_of<2>(solids(water + sand + plate + boulder) + tank + "relaxation: {steps: 2}\n")); }
   TEST_CASE("plan of a tank with a gate in 3D") { compare("gate", plan_of<3>(head + pool + gates)); }
   TEST_CASE("plan without re-initialization and transport velocity") {
     compare("plain_numerics", plan_of<2>(head + pool + tank + "numerics: {density_reinitialization: none, transport_velocity: false}\n"));
