@@ -32,19 +32,21 @@ class RigidKick final : public Effect<Dim> {
     parallel_blocks(static_cast<Index>(bodies_.size()), 1, [&](Index b, Index, Index) { kick(world, set, static_cast<std::size_t>(b)); });
   }
 
+  void prepare(World<Dim>& world) override {
+    for (std::size_t b = 0; b < world.model().bodies.size(); ++b)
+      if (const SolidMaterial* m = solid_of(world.model(), world.model().bodies[b]); m && m->rigid() && solid_set_of(world.model(), b) == set_name())
+        sound_ = std::max(sound_, std::sqrt(m->contact_stiffness() / m->density));
+  }
+
   void limit(const World<Dim>& world, StepLimits& limits) const override {
     const ParticleSet<Dim>& set = world.set(set_name());
     const Numerics& n = world.model().numerics;
-    double sound = 0;
-    for (std::size_t b = 0; b < world.model().bodies.size(); ++b)
-      if (const SolidMaterial* m = solid_of(world.model(), world.model().bodies[b]); m && m->rigid() && solid_set_of(world.model(), b) == set_name())
-        sound = std::max(sound, std::sqrt(m->contact_stiffness() / m->density));
     const double h = set.smoothing_length();
     const auto& v = set.vector(fields::velocity);
     const double speed = std::sqrt(block_max(set.size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
     // No wave runs in it: what its step must resolve is a contact, as stiff as a solid of that speed of sound.
-    const double step = n.cfl_solid * h / (sound + speed);
-    limits.note_speed(set_name(), speed / sound);
+    const double step = n.cfl_solid * h / (sound_ + speed);
+    limits.note_speed(set_name(), speed / sound_);
     limits.solid = std::min(limits.solid, step);
     limits.advection = std::min(limits.advection, n.cfl_advection * h / std::max(speed, 1e-300));
     if (!world.find("water") && !world.find("soil")) limits.advection = std::min(limits.advection, n.advection_ratio_max * step);
@@ -86,6 +88,7 @@ class RigidKick final : public Effect<Dim> {
   }
 
   RigidBodies<Dim> bodies_;
+  double sound_ = 0;  // of the stiffest contact, m/s
 };
 
 const RegisterEffect<RigidKick> registered;

@@ -64,26 +64,28 @@ class SolidKick final : public Effect<Dim> {
     });
   }
 
+  void prepare(World<Dim>& world) override {
+    const SolidParts parts(world);
+    for (std::size_t b = 0; b < parts.of.size(); ++b)
+      if (parts.of[b].elastic && solid_set_of(world.model(), b) == set_) {
+        sound_ = std::max(sound_, parts.of[b].wave_speed);
+        slowest_ = std::min(slowest_, parts.of[b].wave_speed);
+      }
+  }
+
   void limit(const World<Dim>& world, StepLimits& limits) const override {
     const ParticleSet<Dim>& set = world.set(set_);
     const Numerics& n = world.model().numerics;
-    const SolidParts parts(world);
-    double sound = 0, slowest = std::numeric_limits<double>::infinity();
-    for (std::size_t b = 0; b < parts.of.size(); ++b)
-      if (parts.of[b].elastic && solid_set_of(world.model(), b) == set_) {
-        sound = std::max(sound, parts.of[b].wave_speed);
-        slowest = std::min(slowest, parts.of[b].wave_speed);
-      }
     const double h = set.smoothing_length();
     const auto& v = set.vector(fields::velocity);
     const auto& a = set.vector(fields::acceleration);
     const double speed = std::sqrt(block_max(set.size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
     const double pull = std::sqrt(block_max(set.size(), [&](Index i) { return a[i].squaredNorm(); }, 0.0));
-    limits.note_speed(set_, speed / slowest);
+    limits.note_speed(set_, speed / slowest_);
     // Eq. 94, with the compression wave: c_0 of Eq. 53 is slower, by 1.7 times at nu = 0.
     // Weights of one side only, at corners, see short waves twice as well.
     const double sharper = n.solid_gradient == "quadratic" ? 0.7 : 1.0;
-    const double step = sharper * n.cfl_solid * std::min(h / (sound + speed), std::sqrt(h / std::max(pull, 1e-300)));
+    const double step = sharper * n.cfl_solid * std::min(h / (sound_ + speed), std::sqrt(h / std::max(pull, 1e-300)));
     limits.solid = std::min(limits.solid, step);
     limits.advection = std::min(limits.advection, n.cfl_advection * h / std::max(speed, 1e-300));
     // Alone, a solid has no configuration to update: how often somebody may look decides.
@@ -92,6 +94,7 @@ class SolidKick final : public Effect<Dim> {
 
  private:
   std::string set_;
+  double sound_ = 0, slowest_ = std::numeric_limits<double>::infinity();  // of its bodies, m/s
 };
 
 const RegisterEffect<SolidKick> registered;

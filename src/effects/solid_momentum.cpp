@@ -64,10 +64,12 @@ class SolidMomentum final : public Effect<Dim> {
              {set_, &fields::acceleration_sum, Access::write}}, {}, {set_}};
   }
 
+  void prepare(World<Dim>& world) override { viscous_ = viscous_solids(world, set_); }
+
   void apply(World<Dim>& world) override {
     const ParticleSet<Dim>& set = world.set(set_);
     const Kernel<Dim> kernel(set.smoothing_length());
-    if (viscous_solids(world, set_)) run(world, ViscousPiolaForce<Dim>{{kernel}, 0.01 * kernel.h * kernel.h});
+    if (viscous_) run(world, ViscousPiolaForce<Dim>{{kernel}, 0.01 * kernel.h * kernel.h});
     else run(world, PiolaForce<Dim>{kernel});
   }
 
@@ -110,6 +112,7 @@ class SolidMomentum final : public Effect<Dim> {
   }
 
   std::string set_;
+  bool viscous_ = false;
 };
 
 const RegisterEffect<SolidMomentum> registered;

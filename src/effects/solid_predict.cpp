@@ -24,6 +24,8 @@ class SolidPredict final : public Effect<Dim> {
              {set_, &fields::clamp, Access::read}, {set_, &fields::position, Access::update}}, {}, {set_}};
   }
 
+  void prepare(World<Dim>& world) override { viscous_ = viscous_solids(world, set_); }
+
   void apply(World<Dim>& world) override {
     ParticleSet<Dim>& set = world.set(set_);
     if (world.clock.solid_step == 0) deformation_.find_frames(world);
@@ -63,11 +65,10 @@ class SolidPredict final : public Effect<Dim> {
     const auto& part = set.tag(fields::part);
     const auto& clamp = set.tag(fields::clamp);
     const SolidParts parts(world);
-    const bool viscous = viscous_solids(world, set_);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& records = world.records(set_, 0).template get<T>();
-      auto* motion_records = viscous ? &world.records(set_, 1 + solid_slot::stress_records_of_solids<Dim>).template get<T>() : nullptr;
+      auto* motion_records = viscous_ ? &world.records(set_, 1 + solid_slot::stress_records_of_solids<Dim>).template get<T>() : nullptr;
       parallel_for(set.size(), [&](Index i) {
         if (!parts[part[i]].elastic) return;
         if (clamp[i] < 0) {
@@ -88,6 +89,7 @@ class SolidPredict final : public Effect<Dim> {
   }
 
   std::string set_;
+  bool viscous_ = false;
   Deformation<Dim> deformation_;  // its frames hold for one acoustic step
 };
 
