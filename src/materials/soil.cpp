@@ -21,6 +21,11 @@ Schema<Soil> Soil::schema() {
   s.optional("saturated_cohesion", &Soil::saturated_cohesion, unit::pressure,
              "cohesion at full saturation; between, it falls linearly; auto: cohesion does not depend on water").at_least(0).equation("Eq. 108");
   s.optional("dilation_angle", &Soil::dilation_angle, unit::angle, "dilation angle psi").at_least(0).below(1.5).equation("Eq. 14");
+  s.optional("cone", &Soil::cone, unit::none,
+             "loading in which the cone has the strength of Mohr and Coulomb: plane strain, as Eq. 14 has it, or triaxial compression or extension; "
+             "in 3D the first is weak where sand is pressed from one side (30 deg act as 21)")
+      .choices({"plane_strain", "compression", "extension"})
+      .equation("Eq. 14");
   s.optional("drag", &Soil::drag, unit::none,
              "drag of water in the soil; auto: darcy with a hydraulic_conductivity, ergun with a grain_size, else none")
       .choices({"auto", "ergun", "darcy", "none"});
@@ -65,9 +70,11 @@ DruckerPrager<double> Soil::constants(double saturation) const {
   DruckerPrager<double> m{bulk_modulus(), shear_modulus(), 0, 0, 0, 0};
   if (elastic()) return with_strength(m, drucker_prager::unbounded);
   const double dry = cohesion, wet = saturated_cohesion.value_or(cohesion);
-  m.friction = drucker_prager::slope(tan_friction());
-  m.dilation = drucker_prager::slope(std::tan(dilation_angle));
-  return with_strength(m, drucker_prager::strength(wet + (1 - saturation) * (dry - wet), tan_friction()));
+  using drucker_prager::Cone;
+  const Cone edge = cone == "compression" ? Cone::compression : cone == "extension" ? Cone::extension : Cone::plane_strain;
+  m.friction = drucker_prager::slope(tan_friction(), edge);
+  m.dilation = drucker_prager::slope(std::tan(dilation_angle), edge);
+  return with_strength(m, drucker_prager::strength(wet + (1 - saturation) * (dry - wet), tan_friction(), edge));
 }
 
 double Soil::pressure_at_rest() const {
