@@ -196,32 +196,12 @@ void Recorder<Dim>::sample_probe(ProbeRun& p) {
   p.schedule.done(world_.clock.time);
 }
 
+// What every set that moves adds alike.
 template <int Dim>
-void Recorder<Dim>::add_soil_totals(const ParticleSet<Dim>& soil, Totals& sum) const {
-  const WorldView<Dim> view(world_);
-  const Energies e = soil_energies(view);
-  const auto& m = soil.scalar(fields::mass);
-  const auto& v = soil.vector(fields::velocity);
-  const auto& fraction = soil.scalar(fields::volume_fraction);
-  const Index n = soil.size();
-  sum.kinetic += e.kinetic;
-  sum.potential += e.potential;
-  sum.internal += e.internal;
-  sum.dissipated = dissipated_energy(view);
-  sum.mass += ordered_sum(n, [&](Index i) { return m[i]; });
-  const Vec3 momentum = to_space<Dim>(ordered_sum(n, [&](Index i) -> Vec<Dim> { return m[i] * v[i]; }));
-  sum.momentum = {momentum.x(), momentum.y(), momentum.z()};
-  sum.max_speed = std::sqrt(block_max(n, [&](Index i) { return v[i].squaredNorm(); }, 0.0));
-  sum.min_fraction = block_min(n, [&](Index i) { return fraction[i]; });
-  sum.max_fraction = block_max(n, [&](Index i) { return fraction[i]; });
-}
-
-template <int Dim>
-void Recorder<Dim>::add_solid_totals(const ParticleSet<Dim>& solids, Totals& sum) const {
-  const Energies e = solid_energies(WorldView<Dim>(world_), solids.name());
-  const auto& m = solids.scalar(fields::mass);
-  const auto& v = solids.vector(fields::velocity);
-  const Index n = solids.size();
+void Recorder<Dim>::add_set_totals(const ParticleSet<Dim>& set, const Energies& e, Totals& sum) {
+  const auto& m = set.scalar(fields::mass);
+  const auto& v = set.vector(fields::velocity);
+  const Index n = set.size();
   sum.kinetic += e.kinetic;
   sum.potential += e.potential;
   sum.internal += e.internal;
@@ -229,6 +209,17 @@ void Recorder<Dim>::add_solid_totals(const ParticleSet<Dim>& solids, Totals& sum
   const Vec3 momentum = to_space<Dim>(ordered_sum(n, [&](Index i) -> Vec<Dim> { return m[i] * v[i]; }));
   for (std::size_t k = 0; k < 3; ++k) sum.momentum[k] += momentum[static_cast<Index>(k)];
   sum.max_speed = std::max(sum.max_speed, std::sqrt(block_max(n, [&](Index i) { return v[i].squaredNorm(); }, 0.0)));
+}
+
+template <int Dim>
+void Recorder<Dim>::add_soil_totals(const ParticleSet<Dim>& soil, Totals& sum) const {
+  const WorldView<Dim> view(world_);
+  const auto& fraction = soil.scalar(fields::volume_fraction);
+  const Index n = soil.size();
+  add_set_totals(soil, soil_energies(view), sum);
+  sum.dissipated = dissipated_energy(view);
+  sum.min_fraction = block_min(n, [&](Index i) { return fraction[i]; });
+  sum.max_fraction = block_max(n, [&](Index i) { return fraction[i]; });
 }
 
 template <int Dim>
@@ -238,21 +229,13 @@ typename Recorder<Dim>::Totals Recorder<Dim>::totals() const {
   const ParticleSet<Dim>* water = world_.find("water");
   if (const ParticleSet<Dim>* soil = world_.find("soil")) add_soil_totals(*soil, sum);
   for (const auto& set : world_.sets())
-    if (set->phase() == "solid") add_solid_totals(*set, sum);
+    if (set->phase() == "solid") add_set_totals(*set, solid_energies(WorldView<Dim>(world_), set->name()), sum);
   sum.internal += contact_energy(WorldView<Dim>(world_));
   if (!water) return sum;
   const auto& m = water->scalar(fields::mass);
   const auto& rho = water->scalar(fields::density);
-  const auto& v = water->vector(fields::velocity);
   const Index n = water->size();
-  const Energies e = water_energies(WorldView<Dim>(world_));
-  sum.kinetic += e.kinetic;
-  sum.potential += e.potential;
-  sum.internal += e.internal;
-  sum.mass += ordered_sum(n, [&](Index i) { return m[i]; });
-  const Vec3 momentum = to_space<Dim>(ordered_sum(n, [&](Index i) -> Vec<Dim> { return m[i] * v[i]; }));
-  for (std::size_t k = 0; k < 3; ++k) sum.momentum[k] += momentum[static_cast<Index>(k)];
-  sum.max_speed = std::max(sum.max_speed, std::sqrt(block_max(n, [&](Index i) { return v[i].squaredNorm(); }, 0.0)));
+  add_set_totals(*water, water_energies(WorldView<Dim>(world_)), sum);
   sum.min_density = block_min(n, [&](Index i) { return rho[i]; });
   sum.max_density = block_max(n, [&](Index i) { return rho[i]; });
   if (!water->has(fields::water_fraction)) return sum;

@@ -14,6 +14,7 @@
 #include "output/summary.h"
 #include "plan/plan.h"
 #include "probes/probe.h"
+#include "probes/set_sums.h"
 
 namespace sphgeo {
 
@@ -81,7 +82,7 @@ class Recorder {
   void sample_run(double wall_seconds);
   Totals totals() const;
   void add_soil_totals(const ParticleSet<Dim>& soil, Totals& sum) const;
-  void add_solid_totals(const ParticleSet<Dim>& solids, Totals& sum) const;
+  static void add_set_totals(const ParticleSet<Dim>& set, const Energies& e, Totals& sum);
   void write_set(const ParticleSet<Dim>& set);
   void write_boundaries();
   std::vector<std::string> frame_fields(const ParticleSet<Dim>& set) const;
