@@ -11,7 +11,7 @@ from pathlib import Path
 # Lowest first; the rooms of one tuple are neighbours.
 ROOMS = [("core",), ("deck",), ("particles",), ("sph",), ("geometry", "materials"),
          ("relax",), ("boundaries", "effects", "probes"), ("scene",), ("plan",), ("solve", "output"),
-         ("study", "report", "compare"), ("cli",)]
+         ("report",), ("compare",), ("study",), ("cli",)]
 LEVEL = {room: level for level, rooms in enumerate(ROOMS) for room in rooms}
 # "About 400": a file may be a screenful of declarations over it, not more.
 MAX_LINES = 420
