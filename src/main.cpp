@@ -222,6 +222,32 @@ int main(int argc, char** argv) {
   relax_app->add_flag("-q,--quiet", relax.quiet, "say nothing but results");
   relax_app->callback([&] { code = run_guarded([&] { return relax_command(relax); }); });
 
+  StudyOptions study;
+  CLI::App* study_app = app.add_subcommand("study", "run a deck with different settings: what accuracy costs in time");
+  add_deck(study_app, study.deck, study.set);
+  study_app
+      ->add_option("--vary", study.vary,
+                   "the values that a key takes in turn, as resolution=0.04,0.02,0.01; may be repeated")
+      ->required()
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE,VALUE...");
+  study_app->add_flag("--combine", study.combine,
+                      "run all combinations of the varied keys (default: one key at a time)");
+  study_app->add_option("-o,--output", study.folder, "the folder of the study; runs in it are used again")
+      ->required()
+      ->type_name("DIR");
+  study_app->add_option("--jobs", study.jobs, "runs at the same time; more than one disturbs the times")
+      ->check(whole)
+      ->type_name("N");
+  study_app->add_option("--threads", study.threads, "number of threads of each run")
+      ->check(whole)
+      ->type_name("N");
+  study_app->add_option("--max-hours", study.max_hours, "stop, resumable, before this wall time is over")
+      ->check(above_zero<double>("a number"))
+      ->type_name("H");
+  study_app->add_flag("-q,--quiet", study.quiet, "say nothing but results");
+  study_app->callback([&] { code = run_guarded([&] { return study_command(study); }); });
+
   CLI::App* list_app =
       app.add_subcommand("list", "print all types, deck sections, effects and fields");
   list_app->callback([&] { code = run_guarded(list_command); });

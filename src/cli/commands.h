@@ -1,6 +1,7 @@
 #pragma once
 // The commands of the sphgeo binary. Each returns the exit code of the process.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,21 @@ struct RelaxOptions {
 };
 /// Relaxes the water in soil and stores it. Throws Error (usage) when the deck has none.
 int relax_command(const RelaxOptions& options);
+
+struct StudyOptions {
+  std::string deck;
+  std::string folder;
+  std::vector<std::string> set;
+  std::vector<std::string> vary;  ///< KEY=VALUE,VALUE...
+  bool combine = false;           ///< all combinations of the varied keys; else one key at a time
+  int jobs = 1;                   ///< runs at the same time
+  int threads = 0;                ///< of each run; 0: what the scene can use, shared among the jobs
+  std::optional<double> max_hours;
+  bool quiet = false;
+};
+/// Runs a deck with different settings and says what accuracy costs in time. Runs that are in the folder
+/// already are used again. Throws Error (usage), DeckError, IoError.
+int study_command(const StudyOptions& options);
 
 struct BenchOptions {
   bool json = false;

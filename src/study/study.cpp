@@ -1,0 +1,163 @@
+#include "study/study.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+
+namespace sphgeo {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::optional<double> number_in(const Json& object, const char* key) {
+  const auto at = object.find(key);
+  return at != object.end() && at->is_number() ? std::optional<double>(at->get<double>()) : std::nullopt;
+}
+
+std::string text_in(const Json& object, const char* key) {
+  const auto at = object.find(key);
+  return at != object.end() && at->is_string() ? at->get<std::string>() : "";
+}
+
+RecordedResult recorded(const Json& row) {
+  RecordedResult r;
+  r.name = text_in(row, "name");
+  r.value = number_in(row, "value");
+  r.reference = number_in(row, "reference");
+  r.error = number_in(row, "error");
+  r.tolerance = number_in(row, "tolerance").value_or(0);
+  r.pass = row.value("pass", false);
+  r.note = text_in(row, "note");
+  return r;
+}
+
+/// The runs of a curve that say something about the claim; coarsest first where spacings differ.
+StudyResult gather(const Study& study, const StudyCurve& curve, const StudyClaim& claim) {
+  StudyResult result;
+  result.name = claim.name;
+  result.curve = &curve;
+  for (const std::size_t k : curve.runs) {
+    const StudyRun& run = study.runs[k];
+    const RecordedResult* r = run.record.result(claim.name);
+    if (run.record.status == "done" && r != nullptr && r->value) result.runs.push_back(&run);
+  }
+  std::vector<const StudyRun*> sorted = result.runs;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const StudyRun* a, const StudyRun* b) { return a->spacing > b->spacing; });
+  const auto equal = [](const StudyRun* a, const StudyRun* b) { return a->spacing == b->spacing; };
+  result.by_spacing = sorted.size() > 1 && std::adjacent_find(sorted.begin(), sorted.end(), equal) == sorted.end();
+  if (result.by_spacing) result.runs = sorted;
+  for (const StudyRun* run : result.runs) result.values.push_back(*run->record.result(claim.name));
+  return result;
+}
+
+void judge(StudyResult& result, const StudyClaim& claim) {
+  const auto& values = result.values;
+  const bool known = std::any_of(values.begin(), values.end(), [](const RecordedResult& r) { return r.error.has_value(); });
+  if (known) {
+    for (const RecordedResult& r : values) result.errors.push_back(r.error);
+    result.error_against = "the reference";
+  } else if (result.by_spacing) {
+    // The finest run has no error that it could tell itself.
+    const double finest = *values.back().value;
+    const double unit = claim.relative && finest != 0 ? std::abs(finest) : 1;
+    for (const RecordedResult& r : values) result.errors.emplace_back(std::abs(*r.value - finest) / unit);
+    result.errors.back().reset();
+    result.error_against = "the finest run";
+  } else {
+    result.errors.resize(values.size());
+  }
+  if (!result.by_spacing) return;
+  std::vector<Level> levels;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    levels.push_back({result.runs[k]->spacing, *values[k].value, known ? result.errors[k] : std::nullopt});
+  result.convergence = convergence(levels);
+  if (claim.norm) result.convergence.gci.reset();  // a share of an error that goes to zero means nothing
+}
+
+std::string setting_of(const StudyRun& run, const std::string& key) {
+  for (const auto& [name, value] : run.settings)
+    if (name == key) return value;
+  return "";
+}
+
+Offer offer(const StudyResult& result, std::size_t k) {
+  const StudyRun& run = *result.runs[k];
+  return {setting_of(run, result.curve->key), run.spacing, run.record.wall_s, result.errors[k]};
+}
+
+void price(StudyResult& result, const StudyClaim& claim) {
+  std::vector<Offer> offers;
+  for (std::size_t k = 0; k < result.runs.size(); ++k) offers.push_back(offer(result, k));
+  const ErrorScale scale{claim.relative, result.error_against == "the reference" ? claim.tolerance : 0, result.error_against};
+  result.price = result.by_spacing ? price_of_spacing(offers, scale) : price_of_settings(offers, scale);
+}
+
+/// Marks the Pareto front of all curves of one claim.
+void mark_front(std::span<StudyResult> curves) {
+  std::vector<Offer> offers;
+  for (const StudyResult& r : curves)
+    for (std::size_t k = 0; k < r.runs.size(); ++k) offers.push_back(offer(r, k));
+  const std::vector<bool> worth = worth_their_time(offers);
+  std::size_t next = 0;
+  for (StudyResult& r : curves)
+    for (std::size_t k = 0; k < r.runs.size(); ++k) r.worth.push_back(worth[next++]);
+}
+
+}  // namespace
+
+const RecordedResult* RunRecord::result(const std::string& name) const {
+  for (const RecordedResult& r : results)
+    if (r.name == name) return &r;
+  return nullptr;
+}
+
+RunRecord read_run_record(const std::string& folder) {
+  RunRecord record;
+  record.status = "missing";
+  Json summary;
+  try {
+    summary = Json::parse(read_file(folder + "/summary.json"), nullptr, false);
+  } catch (const IoError&) {
+    return record;
+  }
+  if (!summary.is_object() || text_in(summary, "status").empty()) return record;
+  record.status = text_in(summary, "status");
+  record.message = text_in(summary, "message");
+  record.wall_s = number_in(summary, "wall_s").value_or(0);
+  record.memory_bytes = number_in(summary, "memory_peak_bytes").value_or(0);
+  record.threads = static_cast<int>(number_in(summary, "threads").value_or(1));
+  if (const auto steps = summary.find("steps"); steps != summary.end() && steps->is_object())
+    record.acoustic_steps = static_cast<long>(number_in(*steps, "acoustic").value_or(0));
+  if (const auto sets = summary.find("particles"); sets != summary.end() && sets->is_object())
+    for (const auto& [name, count] : sets->items())
+      if (count.is_number()) record.particles += count.get<long>();
+  if (const auto forecast = summary.find("forecast"); forecast != summary.end() && forecast->is_object()) {
+    record.forecast_wall_s = number_in(*forecast, "wall_s");
+    record.forecast_memory_bytes = number_in(*forecast, "memory_bytes");
+  }
+  if (const auto expects = summary.find("expect"); expects != summary.end() && expects->is_array())
+    for (const Json& row : *expects)
+      if (row.is_object()) record.results.push_back(recorded(row));
+  return record;
+}
+
+std::vector<StudyResult> study_results(const Study& study) {
+  std::vector<StudyResult> results;
+  for (const StudyClaim& claim : study.claims) {
+    const std::size_t first = results.size();
+    for (const StudyCurve& curve : study.design.curves) {
+      StudyResult result = gather(study, curve, claim);
+      if (result.runs.empty()) continue;
+      judge(result, claim);
+      price(result, claim);
+      results.push_back(std::move(result));
+    }
+    mark_front(std::span(results).subspan(first));
+  }
+  return results;
+}
+
+}  // namespace sphgeo

@@ -1,0 +1,89 @@
+#pragma once
+// A study: runs of one deck with different settings, and what their results say together.
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/convergence.h"
+#include "study/price.h"
+#include "study/variation.h"
+
+namespace sphgeo {
+
+/// One `expect` of a run, as its summary.json has it.
+struct RecordedResult {
+  std::string name;
+  std::optional<double> value, reference, error;
+  double tolerance = 0;
+  bool pass = false;
+  std::string note;
+};
+
+/// What a run did, from its summary.json.
+struct RunRecord {
+  std::string status;   ///< done, unstable, stopped, failed; "missing" without a summary
+  std::string message;  ///< why it did not end as planned
+  double wall_s = 0;
+  long particles = 0;  ///< of all sets
+  long acoustic_steps = 0;
+  double memory_bytes = 0;
+  int threads = 1;
+  std::optional<double> forecast_wall_s, forecast_memory_bytes;
+  std::vector<RecordedResult> results;
+
+  const RecordedResult* result(const std::string& name) const;
+};
+
+/// Reads summary.json of a run folder; status "missing" when there is none or it cannot be read.
+RunRecord read_run_record(const std::string& folder);
+
+/// A run of the study.
+struct StudyRun {
+  std::vector<Setting> settings;
+  double spacing = 0;  ///< particle spacing that the settings lead to, m
+  std::string folder;  ///< below the study's
+  RunRecord record;
+};
+
+/// A result that a deck claims, and how its errors are meant.
+struct StudyClaim {
+  std::string name;
+  bool relative = true;  ///< errors are shares (of the reference or of a curve's range)
+  double tolerance = 0;
+  bool norm = false;     ///< the value is an error itself (a curve's norm, what must stay below a bound)
+};
+
+/// One result along one curve.
+struct StudyResult {
+  std::string name;
+  const StudyCurve* curve = nullptr;
+  std::vector<const StudyRun*> runs;  ///< done and with a value; coarsest first where spacings differ
+  std::vector<RecordedResult> values; ///< of these runs
+  std::vector<std::optional<double>> errors;
+  std::string error_against;  ///< "the reference", "the finest run", or empty
+  bool by_spacing = false;    ///< whether all spacings differ, so that there is an order
+  Convergence convergence;    ///< by_spacing only
+  std::vector<bool> worth;    ///< on the Pareto front of all curves of this result
+  std::string price;          ///< the sentence
+};
+
+struct Study {
+  std::string deck, title, date, machine, version;
+  std::vector<Variation> varied;
+  StudyDesign design;
+  std::vector<StudyRun> runs;
+  std::vector<StudyClaim> claims;
+};
+
+/// The results of the runs so far, claim by claim, curve by curve.
+std::vector<StudyResult> study_results(const Study& study);
+
+/// study.json.
+nlohmann::ordered_json to_json(const Study& study, const std::vector<StudyResult>& results);
+
+/// Tables and sentences for the terminal.
+std::string render_study(const Study& study, const std::vector<StudyResult>& results);
+
+}  // namespace sphgeo
