@@ -248,6 +248,18 @@ int main(int argc, char** argv) {
   study_app->add_flag("-q,--quiet", study.quiet, "say nothing but results");
   study_app->callback([&] { code = run_guarded([&] { return study_command(study); }); });
 
+  CompareOptions compare;
+  CLI::App* compare_app = app.add_subcommand("compare", "compare a run with another run or with a baseline");
+  compare_app->add_option("run", compare.run, "the folder of the run")->required()->type_name("RUN");
+  compare_app->add_option("baseline", compare.baseline, "a run folder, or a file that --update has written")
+      ->required()
+      ->type_name("BASELINE");
+  compare_app->add_option("--tolerances", compare.tolerances, "a YAML file of tolerances")->type_name("FILE");
+  CLI::Option* update = compare_app->add_flag("--update", compare.update, "write the run to the file as its new baseline");
+  compare_app->add_flag("--json", compare.json, "print JSON")->excludes(update);
+  compare_app->add_flag("--all", compare.all, "list all that was compared")->excludes(update);
+  compare_app->callback([&] { code = run_guarded([&] { return compare_command(compare); }); });
+
   CLI::App* list_app =
       app.add_subcommand("list", "print all types, deck sections, effects and fields");
   list_app->callback([&] { code = run_guarded(list_command); });

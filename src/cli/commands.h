@@ -59,6 +59,18 @@ struct StudyOptions {
 /// already are used again. Throws Error (usage), DeckError, IoError.
 int study_command(const StudyOptions& options);
 
+struct CompareOptions {
+  std::string run;
+  std::string baseline;    ///< a run folder, or a file that --update has written
+  std::string tolerances;  ///< a YAML file; empty: the defaults
+  bool update = false;     ///< write the run as the baseline
+  bool json = false;
+  bool all = false;        ///< list all that was compared
+};
+/// Compares a run with another or with a baseline; exit 4 when one difference is above its tolerance. Throws
+/// Error (usage), DeckError, IoError.
+int compare_command(const CompareOptions& options);
+
 struct BenchOptions {
   bool json = false;
   std::vector<std::string> scenes;   ///< empty: all
