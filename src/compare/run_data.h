@@ -65,8 +65,8 @@ RunData read_baseline(const std::string& path);
 
 /// How much of a run a baseline keeps.
 struct BaselineSize {
-  std::size_t rows = 150;       ///< of a probe, evenly chosen, the last among them
-  std::size_t particles = 150;  ///< of a set, chosen by a hash of their number
+  std::size_t rows = 100;       ///< of a probe, evenly chosen, the last among them
+  std::size_t particles = 100;  ///< of a set, chosen by a hash of their number
 };
 
 /// Writes the run as a baseline: one JSON file, numbers to seven digits. Throws IoError.

@@ -173,6 +173,10 @@ StepLimits Plan<Dim>::limits() const {
   for (const auto& e : effects_) e.effect->limit(world_, limits);
   // Where solids are alone, the acoustic step is theirs.
   if (limits.acoustic == std::numeric_limits<double>::infinity()) limits.acoustic = limits.solid;
+  const double factor = world_.model().numerics.time_step_factor;
+  limits.advection *= factor;
+  limits.acoustic *= factor;
+  limits.solid *= factor;
   return limits;
 }
 

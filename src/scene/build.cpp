@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/parallel.h"
 #include "geometry/fill.h"
 #include "geometry/relax_fill.h"
@@ -48,11 +49,25 @@ double support_radius(const Model& model) {
 
 BodyPoints fill_body(const Body& body, const Model& model) {
   const double dp = body.spacing.value_or(model.resolution);
+  const Numerics& n = model.numerics;
+  BodyPoints points;
   if (body.filling == "relaxed") {
     RelaxFillResult relaxed = relax_fill(*body.shape, dp, model.dimension);
-    return {std::move(relaxed.positions), relaxed.particle_volume};
+    points = {std::move(relaxed.positions), relaxed.particle_volume};
+  } else {
+    points = {fill_lattice(*body.shape, dp, model.dimension), std::pow(dp, model.dimension)};
   }
-  return {fill_lattice(*body.shape, dp, model.dimension), std::pow(dp, model.dimension)};
+  if (n.lattice_jitter > 0) {
+    // Bodies of one shape must not be jittered alike.
+    const std::uint64_t seed = random_bits(static_cast<std::uint64_t>(n.lattice_seed), fnv1a(body.name));
+    parallel_for(static_cast<Index>(points.at.size()), [&](Index k) {
+      for (int axis = 0; axis < 3; ++axis)
+        if (axis != 1 || model.dimension == 3)
+          points.at[static_cast<std::size_t>(k)][axis] +=
+              (2 * random_uniform(seed, static_cast<std::uint64_t>(3 * k + axis)) - 1) * n.lattice_jitter * dp;
+    });
+  }
+  return points;
 }
 
 namespace {

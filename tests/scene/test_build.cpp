@@ -81,6 +81,33 @@ TEST_SUITE("scene") {
     CHECK(findings("gravity: 0\n" + pool, ", max_speed: 1").empty());
   }
 
+  TEST_CASE("lattice_jitter moves particles by no more than it says, another seed otherwise, and no body as another") {
+    const auto places = [](const std::string& numerics) {
+      const std::string two = "bodies:\n  - {name: a, material: water, shape: {type: box, min: [0, 0, 0], max: [0.5, 0.2, 0.3]}}\n"
+                              "  - {name: b, material: water, shape: {type: box, min: [1, 0, 0], max: [1.5, 0.2, 0.3]}}\n";
+      Rig<2> rig(deck("", two + numerics));
+      const auto& x = rig.water().vector(fields::position);
+      std::vector<Vec<2>> out;
+      for (Index k = 0; k < rig.water().size(); ++k) out.push_back(x[k]);
+      return out;
+    };
+    const auto lattice = places(""), jittered = places("numerics: {lattice_jitter: 0.1}");
+    const auto other = places("numerics: {lattice_jitter: 0.1, lattice_seed: 2}");
+    REQUIRE(lattice.size() == 120);
+    double largest = 0;
+    bool bodies_alike = true, seeds_alike = true;
+    for (std::size_t k = 0; k < lattice.size(); ++k) {
+      largest = std::max(largest, (jittered[k] - lattice[k]).cwiseAbs().maxCoeff());
+      seeds_alike = seeds_alike && jittered[k] == other[k];
+      if (k < 60) bodies_alike = bodies_alike && (jittered[k] - lattice[k] - jittered[k + 60] + lattice[k + 60]).norm() < 1e-12;
+    }
+    CHECK(largest <= 0.1 * 0.05 + 1e-12);
+    CHECK(largest > 0.09 * 0.05);
+    CHECK_FALSE(seeds_alike);
+    CHECK_FALSE(bodies_alike);
+    CHECK(places("numerics: {lattice_jitter: 0.1}") == jittered);
+  }
+
   TEST_CASE("a sound scene has no findings") {
     CHECK(findings(pool + tank).empty());
     CHECK(findings<3>(pool + tank).empty());
