@@ -282,6 +282,8 @@ int main(int argc, char** argv) {
   CLI::App* bench_app =
       app.add_subcommand("bench", "measure the speed of the pair loops on fixed scenes");
   bench_app->add_flag("--json", bench.json, "print JSON");
+  bench_app->add_flag("--effects", bench.effects,
+                      "measure what effects would cost that a scene does not call for");
   bench_app->add_option("--scene", bench.scenes, "only this scene; may be repeated")
       ->allow_extra_args(false)
       ->type_name("NAME");

@@ -17,7 +17,7 @@ _sphgeo() {
     relax) options="--help -h --set --output -o --threads --overwrite --verify --quiet -q" ;;
     study) options="--help -h --set --vary --combine --output -o --jobs --threads --max-hours --quiet -q" ;;
     compare) options="--help -h --tolerances --update --json --all" ;;
-    bench) options="--help -h --json --scene --size --precision --seconds --repeats" ;;
+    bench) options="--help -h --effects --json --scene --size --precision --seconds --repeats" ;;
     list | show | reference | schema) options="--help -h" ;;
     *) return ;;
   esac

@@ -78,8 +78,11 @@ struct BenchOptions {
   std::string precision = "both";    ///< single | double | both
   double seconds = 2;                ///< of measuring per repeat
   int repeats = 5;
+  bool effects = false;              ///< what effects would cost that the scenes do not call for
 };
 int bench_command(const BenchOptions& options);
+/// The part --effects of it.
+int bench_effects_command(const BenchOptions& options);
 
 int schema_command();
 

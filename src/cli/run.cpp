@@ -179,7 +179,7 @@ class DeckRun {
     rows.push_back({"guard", stepper.guard().calls(), stepper.guard().seconds(), 0});
     rows.push_back({"checkpoints", keeper.count(), keeper.seconds(), 0});
     for (const auto& e : parts.plan.effects()) {
-      rows.push_back({e.label, e.calls, e.seconds, 0});
+      rows.push_back({e.label, e.calls, e.seconds, 0, e.walked_set, e.in_set > 0 ? e.walked / e.in_set : 0});
       if (e.info.stage != Stage::observe) stepping += e.seconds;
     }
     summary_.particle_updates_per_s_per_core = stepping > 0 ? stepper.particle_updates() / stepping / threads() : 0;

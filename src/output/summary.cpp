@@ -65,11 +65,13 @@ Json to_json(const Summary& s) {
   out["particle_updates_per_s_per_core"] = number(s.particle_updates_per_s_per_core);
   out["memory_peak_bytes"] = s.memory_peak_bytes;
   out["effects"] = Json::array();
-  for (const TimeRow& r : s.effects)
+  for (const TimeRow& r : s.effects) {
     out["effects"].push_back({{"name", r.name},
                               {"calls", r.calls},
                               {"seconds", number(r.seconds)},
                               {"share", number(r.share)}});
+    if (!r.walked_set.empty()) out["effects"].back()["walks"] = {{"set", r.walked_set}, {"share", number(r.walked_share)}};
+  }
   out["expect"] = Json::array();
   for (const ExpectResult& e : s.expect) {
     Json row = {{"name", e.name},
