@@ -70,6 +70,9 @@ Json to_json(const Summary& s) {
                               {"calls", r.calls},
                               {"seconds", number(r.seconds)},
                               {"share", number(r.share)}});
+  out["plan"] = Json::array();
+  for (const PlanRow& r : s.plan)
+    out["plan"].push_back({{"stage", r.stage}, {"name", r.name}, {"equations", r.equations}, {"acts_on", r.acts_on}, {"because", r.because}});
   out["expect"] = Json::array();
   for (const ExpectResult& e : s.expect) {
     Json row = {{"name", e.name},

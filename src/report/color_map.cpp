@@ -70,11 +70,11 @@ std::string css_color(const Color& c) {
 std::string color_bar_svg(const std::string& title, const std::string& unit, double low, double high) {
   constexpr double width = 360, margin = 22, bar = 12, top = 22;
   constexpr int steps = 60;
-  const AxisScale axis({"", unit, false, low, high}, low, high, 4);
-  const std::string bracket = axis.title();
+  const AxisScale axis({title, unit, false, low, high}, low, high, 4);
+  const std::string heading = axis.title();
   std::string out = fmt::format("<svg class=\"colorbar\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} 54\" role=\"img\" aria-label=\"{}\" "
                                 "font-size=\"12.5\" fill=\"currentColor\">\n<text x=\"{}\" y=\"14\">{}</text>\n",
-                                width, html_escaped(title), margin, html_escaped(title + (bracket.empty() ? "" : " " + bracket)));
+                                width, html_escaped(heading), margin, html_escaped(heading));
   const double length = width - 2 * margin;
   for (int k = 0; k < steps; ++k)  // each a little too wide, so that no gap shows
     out += fmt::format("<rect x=\"{:.2f}\" y=\"{}\" width=\"{:.2f}\" height=\"{}\" fill=\"{}\"/>", margin + k * length / steps, top,
