@@ -191,6 +191,7 @@ int main(int argc, char** argv) {
       ->check(whole)
       ->type_name("N");
   run_app->add_flag("--verify", run.verify, "exit with 4 when a result under 'expect' is not met");
+  run_app->add_flag_callback("--no-report", [&] { run.report = false; }, "do not write report.html at the end");
   run_app->add_flag("-q,--quiet", run.quiet, "no progress and no time table");
   run_app->callback([&] { code = run_guarded([&] { return run_command(run); }); });
 
@@ -259,6 +260,11 @@ int main(int argc, char** argv) {
   compare_app->add_flag("--json", compare.json, "print JSON")->excludes(update);
   compare_app->add_flag("--all", compare.all, "list all that was compared")->excludes(update);
   compare_app->callback([&] { code = run_guarded([&] { return compare_command(compare); }); });
+  ReportOptions report;
+  CLI::App* report_app = app.add_subcommand("report", "write a page about one run, or several side by side");
+  report_app->add_option("runs", report.runs, "the folders of the runs")->required()->type_name("RUN...");
+  report_app->add_option("-o,--output", report.output, "the page (default: report.html in the folder of the run)")->type_name("FILE");
+  report_app->callback([&] { code = run_guarded([&] { return report_command(report); }); });
 
   CLI::App* list_app =
       app.add_subcommand("list", "print all types, deck sections, effects and fields");

@@ -3,7 +3,7 @@
 
 _sphgeo() {
   local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} command=${COMP_WORDS[1]}
-  local commands="run check relax study compare list show reference schema bench"
+  local commands="run check relax study compare report list show reference schema bench"
   local options=""
   COMPREPLY=()
 
@@ -12,19 +12,21 @@ _sphgeo() {
     return
   fi
   case $command in
-    run) options="--help -h --set --output -o --threads --overwrite --resume --max-hours --max-steps --max-acoustic-steps --verify --quiet -q" ;;
+    run) options="--help -h --set --output -o --threads --overwrite --resume --max-hours --max-steps --max-acoustic-steps --verify --no-report --quiet -q" ;;
     check) options="--help -h --set --explain --json --no-calibrate --threads" ;;
     relax) options="--help -h --set --output -o --threads --overwrite --verify --quiet -q" ;;
     study) options="--help -h --set --vary --combine --output -o --jobs --threads --max-hours --quiet -q" ;;
     compare) options="--help -h --tolerances --update --json --all" ;;
     bench) options="--help -h --effects --json --scene --size --precision --seconds --repeats" ;;
+    report) options="--help -h --output -o" ;;
     list | show | reference | schema) options="--help -h" ;;
     *) return ;;
   esac
 
   case $before in
     -o | --output)
-      mapfile -t COMPREPLY < <(compgen -d -- "$word")
+      if [[ $command == report ]]; then mapfile -t COMPREPLY < <(compgen -f -X '!*.html' -- "$word"; compgen -d -- "$word")
+      else mapfile -t COMPREPLY < <(compgen -d -- "$word"); fi
       return ;;
     --precision)
       mapfile -t COMPREPLY < <(compgen -W "single double both" -- "$word")
@@ -43,6 +45,8 @@ _sphgeo() {
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$word")
   elif [[ $command == show ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$("${COMP_WORDS[0]}" list 2>/dev/null | sed -n 's/^  \([^ ]*\) .*/\1/p')" -- "$word")
+  elif [[ $command == report ]]; then
+    mapfile -t COMPREPLY < <(compgen -d -- "$word")
   elif [[ $command == run || $command == check || $command == relax || $command == study ]]; then
     # Decks, and folders on the way to them.
     mapfile -t COMPREPLY < <(compgen -f -X '!*.yaml' -- "$word"; compgen -d -S / -- "$word")

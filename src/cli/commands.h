@@ -19,6 +19,7 @@ struct RunOptions {
   RunLimits limits;
   bool verify = false;      ///< exit 4 when an `expect` is not met
   bool quiet = false;
+  bool report = true;       ///< write report.html at the end
 };
 int run_command(const RunOptions& options);
 
@@ -31,6 +32,13 @@ struct CheckOptions {
   int threads = 0;          ///< that the run would have; 0: a sensible number for the scene
 };
 int check_command(const CheckOptions& options);
+
+struct ReportOptions {
+  std::vector<std::string> runs;  ///< their folders
+  std::string output;             ///< the page; empty: report.html in the folder of the only run
+};
+/// Writes a page about runs. Throws Error (usage) when several runs have no page named, IoError.
+int report_command(const ReportOptions& options);
 
 struct RelaxOptions {
   std::string deck;

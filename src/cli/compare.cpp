@@ -14,7 +14,7 @@
 namespace sphgeo {
 
 int compare_command(const CompareOptions& options) {
-  const RunData run = read_run(options.run);
+  const RunData run = read_run_data(options.run);
   if (options.update) {
     if (std::filesystem::is_directory(options.baseline))
       throw Error(ExitCode::usage, printable(options.baseline) + ": --update writes a file, and this is a folder");

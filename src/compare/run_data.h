@@ -57,7 +57,7 @@ struct RunData {
 
 /// Reads a run folder: all rows of all probes and the last frame of each set of particles. Throws IoError,
 /// TableError; Error (usage) when the folder holds no finished run.
-RunData read_run(const std::string& folder);
+RunData read_run_data(const std::string& folder);
 
 /// Reads a baseline that write_baseline() has written. Throws IoError; Error (usage) with the path when it is damaged
 /// or no baseline.

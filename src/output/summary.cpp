@@ -72,6 +72,9 @@ Json to_json(const Summary& s) {
                               {"share", number(r.share)}});
     if (!r.walked_set.empty()) out["effects"].back()["walks"] = {{"set", r.walked_set}, {"share", number(r.walked_share)}};
   }
+  out["plan"] = Json::array();
+  for (const PlanRow& r : s.plan)
+    out["plan"].push_back({{"stage", r.stage}, {"name", r.name}, {"equations", r.equations}, {"acts_on", r.acts_on}, {"because", r.because}});
   out["expect"] = Json::array();
   for (const ExpectResult& e : s.expect) {
     Json row = {{"name", e.name},

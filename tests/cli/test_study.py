@@ -147,7 +147,7 @@ class Compare(ProgramTest):
         self.compare("c", "base.json", "--tolerances", "wide.yaml", expected=2)
 
     def test_what_is_no_run(self):
-        self.compare("nowhere", "a", expected=2)
+        self.compare("nowhere", "a", expected=5)
         self.compare("a", "nowhere.json", expected=5)
         self.compare("a", "fall.yaml", expected=2)
         self.compare("a", "b", "--update", expected=2)

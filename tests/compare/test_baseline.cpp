@@ -80,7 +80,7 @@ TEST_CASE("what is no baseline, or a damaged one, is refused with its path") {
     CAPTURE(text);
     CHECK(refused(text));
   }
-  CHECK_THROWS_AS(read_run(folder.path()), Error);
+  CHECK_THROWS_AS(read_run_data(folder.path()), Error);
 }
 
 TEST_CASE("tolerances are read from a file, and a mistake in it is found with its line") {
