@@ -81,12 +81,14 @@ CatalogGroup effects() {
   for (const EffectRegistry::Entry& e : EffectRegistry::all())
     g.entries.push_back({e.info.name, e.info.sentence, {},
                          {{"stage", stage_name(e.info.stage)}, {"equations", e.info.equations},
-                          {"runs", e.info.supporting ? "when an effect, a probe or a frame reads what it computes" : "whenever the scene has what it acts on"}}});
+                          {"runs", e.info.supporting ? "when an effect, a probe or a frame reads what it computes" : "whenever the scene has what it acts on"},
+                          {"without it", e.info.when_off.empty() ? "cannot be switched off" : e.info.when_off}}});
   return g;
 }
 
 CatalogGroup fields_group() {
-  constexpr const char* types[] = {"a number", "a vector", "a whole number", "a whole number"};
+  constexpr const char* types[] = {"a number", "a vector", "a symmetric tensor", "a whole number", "a whole number"};
+  static_assert(std::size(types) == static_cast<std::size_t>(FieldType::identity) + 1);
   constexpr const char* lifetimes[] = {"state: evolves, is saved", "reference: fixed at t = 0, is saved", "derived: computed when something reads it"};
   CatalogGroup g{"field", "fields", "Values of each particle, by the names that `output.frames.fields` and frames use.", {}};
   for (const FieldSpec* f : fields::all)

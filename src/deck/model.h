@@ -161,6 +161,7 @@ struct Model {
   Numerics numerics;
   Relaxation relaxation;
   std::vector<Expect> expect;
+  std::vector<std::string> without;  ///< effects that are switched off
 
   Places places;         ///< where each key path stands
   Diagnostics warnings;  ///< of the reading

@@ -59,6 +59,8 @@ struct EffectInfo {
   std::string sentence;
   /// A supporting effect runs only when something active reads a field that it writes.
   bool supporting = false;
+  /// What a scene is without it, as "soil does not feel ..."; empty for an effect that no deck can switch off.
+  std::string when_off = {};
 };
 
 /// Upper bounds of the three clocks, s, and the fastest particle that they rest on.

@@ -60,6 +60,11 @@ template <int Dim>
 void Plan<Dim>::bind(const std::vector<Wish>& wishes) {
   std::vector<PlannedEffect<Dim>> supporting;
   for (const auto& entry : EffectRegistry::all()) {
+    const auto& off = world_.model().without;
+    if (std::find(off.begin(), off.end(), entry.info.name) != off.end()) {
+      unused_.push_back({entry.info.name, "switched off by the deck: " + entry.info.when_off});
+      continue;
+    }
     Binding<Dim> binding = entry.template bind<Dim>(world_);
     if (binding.effects.empty()) unused_.push_back({entry.info.name, binding.because});
     for (auto& effect : binding.effects) {

@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "core/text.h"
+#include "effects/effect.h"
 #include "materials/soil.h"
 #include "probes/probe.h"
 #include "scene/leak.h"
@@ -154,6 +155,27 @@ void check_coupling(const World<Dim>& world, Diagnostics& found) {
   }
 }
 
+// What a deck switches off must be an effect that can be, and the reader is told what that means.
+void check_switched_off(const Model& model, Diagnostics& found) {
+  std::vector<std::string> can, all;
+  for (const auto& entry : EffectRegistry::all()) {
+    all.push_back(entry.info.name);
+    if (!entry.info.when_off.empty()) can.push_back(entry.info.name);
+  }
+  for (std::size_t k = 0; k < model.without.size(); ++k) {
+    const std::string& name = model.without[k];
+    const std::string path = fmt::format("without[{}]", k);
+    if (std::find(can.begin(), can.end(), name) != can.end()) {
+      for (const auto& entry : EffectRegistry::all())
+        if (entry.info.name == name) found.warning("W134", model.place_of(path), path, fmt::format("effect '{}' is switched off: {}", name, entry.info.when_off), "");
+    } else if (std::find(all.begin(), all.end(), name) != all.end()) {
+      found.error("E135", model.place_of(path), path, fmt::format("effect '{}' cannot be switched off", name), "these can: " + in_words(can));
+    } else {
+      found.error("E135", model.place_of(path), path, fmt::format("there is no effect '{}'", name), suggestion(name, can, "effects that can be switched off"));
+    }
+  }
+}
+
 void check_shapes(const Model& model, Diagnostics& found) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     CheckContext context(found, model.places, fmt::format("bodies[{}].shape", b), model.dimension, model.resolution);
@@ -167,6 +189,7 @@ template <int Dim>
 void check_scene(const Scene<Dim>& scene, Diagnostics& found) {
   World<Dim>& world = *scene.world;
   check_shapes(world.model(), found);
+  check_switched_off(world.model(), found);
   for (const auto& set : world.sets()) {
     if (set->phase() == "wall") continue;
     check_bodies_overlap(world, *set, found);

@@ -94,6 +94,17 @@ TEST_SUITE("explain") {
                                                  "  - {name: inside, type: stress, at: [0.2, 0.1, 0.1]}\n"
                                                  "  - {name: pores, type: mean, set: water, field: water_fraction}\n", {"materials.sand.drag=none"}));
   }
+  TEST_CASE("an effect that the deck switches off is in no plan, and the plan says what that means") {
+    Rig<2> rig("dimension: 2\n" + solids(water + sand) + "relaxation: {steps: 2}\nwithout: [drag]\n");
+    rig.plan_it({});
+    for (const auto& e : rig.plan->effects()) {
+      CHECK(e.info.name != "drag");
+    }
+    int told = 0;
+    for (const auto& u : rig.plan->unused())
+      if (u.because.find("switched off by the deck: ") == 0) ++told;
+    CHECK(told == 1);
+  }
   TEST_CASE("plan of a boulder on soil") { compare("soil_boulder", plan_of<2>(solids(sand + boulder))); }
   TEST_CASE("plan of everything") { compare("all_phases", plan_of<2>(solids(water + sand + plate + boulder) + tank + "relaxation: {steps: 2}\n")); }
   TEST_CASE("plan of a tank with a gate in 3D") { compare("gate", plan_of<3>(head + pool + gates)); }

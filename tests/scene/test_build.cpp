@@ -108,6 +108,12 @@ TEST_SUITE("scene") {
     CHECK(places("numerics: {lattice_jitter: 0.1}") == jittered);
   }
 
+  TEST_CASE("an effect is switched off with a warning, an unknown one or one that is needed not at all") {
+    CHECK(findings(pool + tank + "without: [drag]\n") == std::multiset<std::string>{"W134"});
+    CHECK(findings(pool + tank + "without: [water_momentum]\n") == std::multiset<std::string>{"E135"});
+    CHECK(findings(pool + tank + "without: [drga]\n") == std::multiset<std::string>{"E135"});
+  }
+
   TEST_CASE("a sound scene has no findings") {
     CHECK(findings(pool + tank).empty());
     CHECK(findings<3>(pool + tank).empty());
