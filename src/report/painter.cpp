@@ -49,6 +49,20 @@ View view_of(const Aabb& box, int dimension, int most_width, int most_height) {
   return view;
 }
 
+Aabb picture_box(const Aabb& particles, const Aabb& walls, double reach) {
+  if (particles.empty() || walls.empty()) return particles.empty() ? walls : particles;
+  Aabb box = particles;
+  const Vec3 most = Vec3::Constant(reach * (box.hi - box.lo).maxCoeff());
+  box.lo = box.lo.cwiseMin(walls.lo.cwiseMax(box.lo - most));
+  box.hi = box.hi.cwiseMax(walls.hi.cwiseMin(box.hi + most));
+  return box;
+}
+
+double disc_cover(const View& view, double spacing) {
+  if (!view.flat) return 1.25;
+  return spacing * view.scale < 9 ? 1.42 : 1.08;
+}
+
 Painter::Painter(const View& view, std::vector<Color> colors) : view_(view), colors_(std::move(colors)) {
   if (colors_.empty() || colors_.size() > most_colors) throw std::invalid_argument("a painter of no or too many colours");
   const auto n = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);

@@ -273,15 +273,7 @@ class Paintings {
     return range;
   }
 
-  /// What the pictures of a run show: its particles, and its walls as far as they are not much larger.
-  static Aabb window(const RunFrames& run) {
-    Aabb box = run.box;
-    if (run.walls.empty() || box.empty()) return box;
-    const Vec3 reach = Vec3::Constant(0.5 * (box.hi - box.lo).maxCoeff());
-    box.lo = box.lo.cwiseMin(run.walls.lo.cwiseMax(box.lo - reach));
-    box.hi = box.hi.cwiseMax(run.walls.hi.cwiseMin(box.hi + reach));
-    return box;
-  }
+  static Aabb window(const RunFrames& run) { return picture_box(run.box, run.walls); }
 
   int dimension(const RunRecord& run) const {
     if (run.model) return run.model->dimension;
@@ -340,9 +332,7 @@ class Paintings {
         }
       const auto known = run.spacing.find(set);
       const double spacing = known != run.spacing.end() && known->second > 0 ? known->second : 4 / view.scale;
-      // Small discs cover the plane, since gaps of about a pixel make patterns of their own; large ones may be told apart.
-      const double cover = !view.flat ? 1.25 : spacing * view.scale < 9 ? 1.42 : 1.08;
-      painter.discs(frame.points, cover * spacing, tints, layer * 0.25 * spacing);
+      painter.discs(frame.points, disc_cover(view, spacing) * spacing, tints, layer * 0.25 * spacing);
     }
     if (view.flat) draw_walls();
     return painter.picture();
