@@ -201,6 +201,7 @@ int main(int argc, char** argv) {
   check_app->add_flag("--explain", check.explain,
                       "print the plan: what runs and why, lists, fields, memory");
   check_app->add_flag("--json", check.json, "the plan and the forecast as JSON");
+  check_app->add_option("--preview", check.preview, "paint the scene before it runs into this PNG")->type_name("FILE");
   check_app->add_flag_callback("--no-calibrate", [&] { check.calibrate = false; },
                                "do not time a few steps: the forecast says nothing of the time");
   check_app->add_option("--threads", check.threads, "number of threads of the forecast run")

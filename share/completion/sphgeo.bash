@@ -13,7 +13,7 @@ _sphgeo() {
   fi
   case $command in
     run) options="--help -h --set --output -o --threads --overwrite --resume --max-hours --max-steps --max-acoustic-steps --verify --no-report --quiet -q" ;;
-    check) options="--help -h --set --explain --json --no-calibrate --threads" ;;
+    check) options="--help -h --set --explain --json --preview --no-calibrate --threads" ;;
     relax) options="--help -h --set --output -o --threads --overwrite --verify --quiet -q" ;;
     study) options="--help -h --set --vary --combine --output -o --jobs --threads --max-hours --quiet -q" ;;
     compare) options="--help -h --tolerances --update --json --all" ;;
@@ -27,6 +27,9 @@ _sphgeo() {
     -o | --output)
       if [[ $command == report ]]; then mapfile -t COMPREPLY < <(compgen -f -X '!*.html' -- "$word"; compgen -d -- "$word")
       else mapfile -t COMPREPLY < <(compgen -d -- "$word"); fi
+      return ;;
+    --preview)
+      mapfile -t COMPREPLY < <(compgen -f -X '!*.png' -- "$word"; compgen -d -- "$word")
       return ;;
     --precision)
       mapfile -t COMPREPLY < <(compgen -W "single double both" -- "$word")

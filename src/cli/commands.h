@@ -28,6 +28,7 @@ struct CheckOptions {
   std::vector<std::string> set;
   bool explain = false;
   bool json = false;
+  std::string preview;      ///< a PNG of the scene; empty: none
   bool calibrate = true;    ///< time a few steps for the forecast
   int threads = 0;          ///< that the run would have; 0: a sensible number for the scene
 };

@@ -7,9 +7,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "boundaries/boundary.h"
+#include "cli/boundary_mesh.h"
 #include "core/parallel.h"
-#include "geometry/mesh.h"
 #include "output/vtu.h"
 #include "probes/set_sums.h"
 #include "probes/solid_scene.h"
@@ -324,36 +323,13 @@ void Recorder<Dim>::write_set(const ParticleSet<Dim>& set) {
 template <int Dim>
 void Recorder<Dim>::write_boundaries() {
   const Model& model = world_.model();
-  const bool moves = std::any_of(model.boundaries.begin(), model.boundaries.end(), [](const auto& b) {
-    return dynamic_cast<const WallBoundary&>(*b).motion.has_value();
-  });
-  const Index number = moves ? frame_ : 0;  // walls at rest are written once and listed at every time
+  const Index number = boundaries_move(model) ? frame_ : 0;  // walls at rest are written once and listed at every time
   if (number == frame_) {
-    const Placement placement{model.resolution, support_radius(model), Dim};
-    const double t = world_.clock.time;
-    std::vector<Vec3> points;
-    std::vector<Index> corners;
-    std::vector<std::int32_t> part;
-    for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
-      const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
-      const auto solid = wall.solid(placement);
-      if (!solid) continue;
-      const SurfaceMesh mesh = surface_mesh(*solid, 2 * model.resolution, Dim);
-      const auto first = static_cast<Index>(points.size());
-      for (const Vec3& p : mesh.points) points.push_back(wall.motion ? wall.motion->position(p, t) : p);
-      const auto add = [&](const auto& cells) {
-        for (const auto& cell : cells) {
-          for (const std::int32_t c : cell) corners.push_back(first + c);
-          part.push_back(static_cast<std::int32_t>(b));
-        }
-      };
-      if constexpr (Dim == 2) add(mesh.segments);
-      else add(mesh.triangles);
-    }
+    const BoundaryMesh mesh = boundary_mesh(model, world_.clock.time);
     VtuOptions options;
-    options.time = t;
-    write_vtu_mesh(folder_.frame("boundaries", number), points, Dim, corners, {},
-                   {{"part", "", 1, std::span<const std::int32_t>(part)}}, options);
+    options.time = world_.clock.time;
+    write_vtu_mesh(folder_.frame("boundaries", number), mesh.points, Dim, mesh.corners, {},
+                   {{"part", "", 1, std::span<const std::int32_t>(mesh.part)}}, options);
   }
   pvd_.at("boundaries").add(world_.clock.time, RunFolder::frame_name("boundaries", number));
 }

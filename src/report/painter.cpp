@@ -2,11 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numbers>
 #include <stdexcept>
+#include <unordered_map>
+
+#include "core/hash.h"
 
 namespace sphgeo {
 
@@ -44,6 +47,20 @@ View view_of(const Aabb& box, int dimension, int most_width, int most_height) {
   view.left = (x0 + x1) / 2 - view.width / (2 * view.scale);
   view.top = (y0 + y1) / 2 + view.height / (2 * view.scale);
   return view;
+}
+
+Aabb picture_box(const Aabb& particles, const Aabb& walls, double reach) {
+  if (particles.empty() || walls.empty()) return particles.empty() ? walls : particles;
+  Aabb box = particles;
+  const Vec3 most = Vec3::Constant(reach * (box.hi - box.lo).maxCoeff());
+  box.lo = box.lo.cwiseMin(walls.lo.cwiseMax(box.lo - most));
+  box.hi = box.hi.cwiseMax(walls.hi.cwiseMin(box.hi + most));
+  return box;
+}
+
+double disc_cover(const View& view, double spacing) {
+  if (!view.flat) return 1.25;
+  return spacing * view.scale < 9 ? 1.42 : 1.08;
 }
 
 Painter::Painter(const View& view, std::vector<Color> colors) : view_(view), colors_(std::move(colors)) {
@@ -182,23 +199,49 @@ std::vector<std::pair<Index, Index>> outline(std::span<const Vec3> points, int c
   if (corners_per_cell == 2)
     for (std::size_t i = 0; i + 1 < corners.size(); i += 2) lines.emplace_back(corners[i], corners[i + 1]);
   if (corners_per_cell != 3) return lines;
-  // Meshes repeat a point for each face: equal places are one corner.
-  std::map<std::array<double, 3>, Index> first;
+  const std::size_t triangles = corners.size() / 3;
+  // A surface that was cut from a grid repeats points, and has faces without area between them: equal places are one corner.
+  const auto hash = [](const Vec3& p) {
+    std::uint64_t bits = 0;
+    for (const double c : p) bits = random_bits(bits, std::bit_cast<std::uint64_t>(c + 0.0));  // -0 is 0
+    return bits;
+  };
+  std::unordered_map<Vec3, Index, decltype(hash)> corner_at(2 * points.size(), hash);
   std::vector<Index> same(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i)
-    same[i] = first.try_emplace({points[i].x(), points[i].y(), points[i].z()}, static_cast<Index>(i)).first->second;
-  std::map<std::pair<Index, Index>, std::vector<Vec3>> faces;  // the normals on both sides of each edge
-  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
-    const auto at = [&](std::size_t k) { return same[static_cast<std::size_t>(corners[i + k])]; };
-    const auto place = [&](std::size_t k) { return points[static_cast<std::size_t>(at(k))]; };
-    const Vec3 normal = (place(1) - place(0)).cross(place(2) - place(0));
-    if (!(normal.norm() > 0)) continue;
-    for (std::size_t k = 0; k < 3; ++k) faces[std::minmax(at(k), at((k + 1) % 3))].push_back(normal.normalized());
+  for (std::size_t i = 0; i < points.size(); ++i) same[i] = corner_at.try_emplace(points[i], static_cast<Index>(i)).first->second;
+  std::vector<Vec3> normals(triangles);
+  const auto corner = [&](std::size_t t, std::size_t k) { return same[static_cast<std::size_t>(corners[3 * t + k % 3])]; };
+  const auto lower = [&](std::size_t t, std::size_t k) { return static_cast<std::size_t>(std::min(corner(t, k), corner(t, k + 1))); };
+  // The sides of all faces, sorted by the lower of their two corners: those of one corner are few.
+  std::vector<std::size_t> begin(points.size() + 1, 0);
+  for (std::size_t t = 0; t < triangles; ++t) {
+    const auto place = [&](std::size_t k) { return points[static_cast<std::size_t>(corner(t, k))]; };
+    normals[t] = (place(1) - place(0)).cross(place(2) - place(0));
+    if (!(normals[t].norm() > 0)) continue;
+    normals[t].normalize();
+    for (std::size_t k = 0; k < 3; ++k) ++begin[lower(t, k) + 1];
   }
+  for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+  struct Side {
+    Index to;
+    std::size_t face;
+  };
+  std::vector<Side> sides(begin.back());
+  std::vector<std::size_t> next(begin.begin(), begin.end() - 1);
+  for (std::size_t t = 0; t < triangles; ++t)
+    for (std::size_t k = 0; k < 3 && normals[t].norm() > 0; ++k) sides[next[lower(t, k)]++] = {std::max(corner(t, k), corner(t, k + 1)), t};
   const double sharp = std::cos(30 * std::numbers::pi / 180);
-  for (const auto& [edge, normals] : faces)
-    if (normals.size() == 1 || std::any_of(normals.begin(), normals.end(), [&](const Vec3& n) { return n.dot(normals.front()) < sharp; }))
-      lines.push_back(edge);
+  for (std::size_t from = 0; from < points.size(); ++from) {
+    const auto first = sides.begin() + static_cast<long>(begin[from]), last = sides.begin() + static_cast<long>(begin[from + 1]);
+    std::sort(first, last, [](const Side& a, const Side& b) { return std::pair(a.to, a.face) < std::pair(b.to, b.face); });
+    for (auto side = first; side != last;) {
+      auto end = side;
+      bool bent = false;
+      for (; end != last && end->to == side->to; ++end) bent = bent || normals[end->face].dot(normals[side->face]) < sharp;
+      if (end - side == 1 || bent) lines.emplace_back(static_cast<Index>(from), side->to);
+      side = end;
+    }
+  }
   return lines;
 }
 

@@ -27,6 +27,14 @@ struct View {
 /// `dimension` 2: the x-z plane; 3: from in front, the right and above.
 View view_of(const Aabb& box, int dimension, int most_width, int most_height);
 
+/// What a picture of a scene shows: its particles, and its walls as far as they reach out by no more than `reach` times the
+/// size of what the particles fill. Either may be empty.
+Aabb picture_box(const Aabb& particles, const Aabb& walls, double reach = 0.5);
+
+/// By how much discs of particles of this spacing (m) should be larger than it: small ones cover the plane, since gaps
+/// of about a pixel make patterns of their own; large ones may be told apart.
+double disc_cover(const View& view, double spacing);
+
 /// Paints into a picture that begins transparent. Colours are numbers in the list given at the start (at most
 /// `most_colors`); in 3D each of them is shaded.
 class Painter {

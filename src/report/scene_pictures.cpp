@@ -17,7 +17,7 @@ namespace sphgeo {
 namespace {
 
 constexpr int levels = 36;                     ///< colours of a quantity
-constexpr std::size_t kept_values = 3'000'000; ///< numbers of frames held in memory at a time; more are read again
+constexpr std::size_t kept_values = 8'000'000; ///< numbers of frames held in memory at a time; more are read again
 constexpr double clipped_share = 0.01;         ///< of all values, at each end of the colours
 constexpr double clipped_share_strain = 0.02;  ///< plastic strain is large in few places
 
@@ -38,8 +38,17 @@ const std::vector<Quantity>& known_quantities() {
   return known;
 }
 
+/// What is drawn of the boundaries.
+struct WallLines {
+  std::vector<std::pair<Vec3, Vec3>> lines;
+  Aabb box;
+};
+
 /// All sets of a run at one moment.
-using Moment = std::map<std::string, VtuFrame>;
+struct Moment {
+  std::map<std::string, VtuFrame> sets;
+  const WallLines* walls = nullptr;
+};
 
 struct RunFrames {
   const RunRecord* run = nullptr;
@@ -156,7 +165,8 @@ class Paintings {
     for (const auto& [set, frames] : run.run->frames)
       if (const PvdFile::Frame* frame = frame_at(frames, time)) {
         try {
-          moment.emplace(set, read_vtu(frame->file, reading));
+          if (set == "boundaries") moment.walls = &walls_of(frame->file);
+          else moment.sets.emplace(set, read_vtu(frame->file, reading));
         } catch (const Error& e) {
           problems_.insert(e.what());
         }
@@ -164,12 +174,23 @@ class Paintings {
     return moment;
   }
 
+  /// Walls at rest have one file for all times.
+  const WallLines& walls_of(const std::string& file) {
+    if (const auto known = walls_.find(file); known != walls_.end()) return known->second;
+    const VtuFrame frame = read_vtu(file);
+    WallLines walls;
+    for (const Vec3& p : frame.points) walls.box.extend(p);
+    for (const auto& [a, b] : outline(frame.points, frame.corners_per_cell, frame.corners))
+      walls.lines.emplace_back(frame.points[static_cast<std::size_t>(a)], frame.points[static_cast<std::size_t>(b)]);
+    return walls_.emplace(file, std::move(walls)).first->second;
+  }
+
   /// From memory while the frames are small.
   const Moment& moment(std::size_t run, std::size_t time, Moment& scratch) {
     if (const auto it = kept_.find({run, time}); it != kept_.end()) return it->second;
     Moment loaded = load(runs_[run], *runs_[run].moments[time]);
     std::size_t values = 0;
-    for (const auto& [set, frame] : loaded) {
+    for (const auto& [set, frame] : loaded.sets) {
       values += 3 * frame.points.size();
       for (const VtuColumn& c : frame.point_fields) values += c.values.size();
     }
@@ -189,9 +210,10 @@ class Paintings {
       for (std::size_t t = 0; t < times_.size(); ++t) {
         if (!runs_[r].moments[t]) continue;
         Moment scratch;
-        for (const auto& [set, frame] : moment(r, t, scratch)) {
+        const Moment& now = moment(r, t, scratch);
+        if (now.walls) runs_[r].walls.extend(now.walls->box);
+        for (const auto& [set, frame] : now.sets) {
           look(runs_[r], set, frame, t == 0);
-          if (frame.corners_per_cell != 1) continue;
           for (const VtuColumn& c : frame.point_fields) {
             units[c.name] = c.unit;
             const std::size_t stride = 1 + c.tuples() / 50'000;
@@ -217,11 +239,6 @@ class Paintings {
   static void look(RunFrames& run, const std::string& set, const VtuFrame& frame, bool first) {
     if (frame.points.empty()) return;
     Aabb box;
-    if (frame.corners_per_cell != 1) {
-      for (const Vec3& p : frame.points) box.extend(p);
-      run.walls.extend(box);
-      return;
-    }
     if (!run.spacing.contains(set)) run.spacing[set] = typical_spacing(frame.points);
     std::vector<double> values;
     for (int axis = 0; axis < 3; ++axis) {
@@ -256,15 +273,7 @@ class Paintings {
     return range;
   }
 
-  /// What the pictures of a run show: its particles, and its walls as far as they are not much larger.
-  static Aabb window(const RunFrames& run) {
-    Aabb box = run.box;
-    if (run.walls.empty() || box.empty()) return box;
-    const Vec3 reach = Vec3::Constant(0.5 * (box.hi - box.lo).maxCoeff());
-    box.lo = box.lo.cwiseMin(run.walls.lo.cwiseMax(box.lo - reach));
-    box.hi = box.hi.cwiseMax(run.walls.hi.cwiseMin(box.hi + reach));
-    return box;
-  }
+  static Aabb window(const RunFrames& run) { return picture_box(run.box, run.walls); }
 
   int dimension(const RunRecord& run) const {
     if (run.model) return run.model->dimension;
@@ -300,15 +309,18 @@ class Paintings {
     };
     Painter painter(view, std::move(colors));
     // Sets that show the quantity come last: water lies in the pores of soil, where both would be painted.
-    std::vector<std::pair<int, const Moment::value_type*>> order;
-    for (const auto& entry : now) {
-      if (entry.second.corners_per_cell != 1) continue;
+    std::vector<std::pair<int, const std::pair<const std::string, VtuFrame>*>> order;
+    for (const auto& entry : now.sets) {
       const bool shows = entry.second.find(quantity.field) && (quantity.of.empty() || quantity.of == kind_of(entry.first));
       const int layer = kind_of(entry.first) == "solids" ? 2 : kind_of(entry.first) == "soil" ? 1 : 0;
       order.emplace_back(layer + (shows && !quantity.of.empty() ? 10 : 0), &entry);
     }
     std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    if (const auto walls = now.find("boundaries"); walls != now.end() && !view.flat) draw_walls(painter, walls->second, wall);
+    const auto draw_walls = [&] {
+      if (now.walls)
+        for (const auto& [a, b] : now.walls->lines) painter.line(a, b, 2, wall);
+    };
+    if (!view.flat) draw_walls();
     for (const auto& [layer, entry] : order) {
       const auto& [set, frame] = *entry;
       const VtuColumn* column = quantity.of.empty() || quantity.of == kind_of(set) ? frame.find(quantity.field) : nullptr;
@@ -320,17 +332,10 @@ class Paintings {
         }
       const auto known = run.spacing.find(set);
       const double spacing = known != run.spacing.end() && known->second > 0 ? known->second : 4 / view.scale;
-      // Small discs cover the plane, since gaps of about a pixel make patterns of their own; large ones may be told apart.
-      const double cover = !view.flat ? 1.25 : spacing * view.scale < 9 ? 1.42 : 1.08;
-      painter.discs(frame.points, cover * spacing, tints, layer * 0.25 * spacing);
+      painter.discs(frame.points, disc_cover(view, spacing) * spacing, tints, layer * 0.25 * spacing);
     }
-    if (const auto walls = now.find("boundaries"); walls != now.end() && view.flat) draw_walls(painter, walls->second, wall);
+    if (view.flat) draw_walls();
     return painter.picture();
-  }
-
-  static void draw_walls(Painter& painter, const VtuFrame& walls, int color) {
-    for (const auto& [a, b] : outline(walls.points, walls.corners_per_cell, walls.corners))
-      painter.line(walls.points[static_cast<std::size_t>(a)], walls.points[static_cast<std::size_t>(b)], 2, color);
   }
 
   PictureWishes wishes_;
@@ -339,6 +344,7 @@ class Paintings {
   std::vector<Quantity> quantities_, fields_;
   std::map<std::string, Range> ranges_;
   std::map<std::pair<std::size_t, std::size_t>, Moment> kept_;
+  std::map<std::string, WallLines> walls_;  ///< by file
   std::size_t values_ = 0;  ///< numbers in kept_
   std::set<std::string> problems_;
   bool all_fields_ = false;

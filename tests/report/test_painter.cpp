@@ -138,6 +138,10 @@ TEST_SUITE("report") {
         for (const Index k : side > 0 ? std::vector{a, b, c, a, c, d} : std::vector{a, c, b, a, d, c}) corners.push_back(k);
       }
     CHECK(outline(points, 3, corners).size() == 12);
+    // A face without area between two others, as surfaces that were cut from a grid have, draws nothing.
+    points.push_back(points[static_cast<std::size_t>(corners[0])]);
+    for (const Index k : {corners[0], static_cast<Index>(points.size()) - 1, corners[1]}) corners.push_back(k);
+    CHECK(outline(points, 3, corners).size() == 12);
     CHECK(outline(points, 2, std::vector<Index>{0, 1, 1, 2}).size() == 2);
     CHECK(outline(points, 1, {}).empty());
   }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The page of a run: its visible numbers are those of summary.json, its pictures show something, and it asks for
+"""The page of a run and the preview of a scene. The page's visible numbers are those of summary.json, its pictures show something, and it asks for
 nothing else. With Chromium installed also: a browser has nothing to say against it, light and dark; without it
 this part is skipped (exit 77).
 
@@ -172,6 +172,11 @@ def main():
             wrong.append("two runs without -o are no usage error")
         if subprocess.run([sphgeo, "report", here], capture_output=True).returncode != 5:
             wrong.append("a folder without a run is no error of files")
+        scene = here / "scene.png"
+        call("check", ROOT / "decks" / "quickstart.yaml", "--no-calibrate", "--preview", scene)
+        width, height, rows, _ = png_pixels(scene.read_bytes())
+        if width < 400 or height < 100 or len({byte for row in rows for byte in row}) < 4:  # paper, water, walls, probes
+            wrong.append(f"the preview of {width} x {height} pixels shows nothing")
         chromium = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
         if chromium:
             wrong += check_browser(chromium, one / "report.html", [one], here)
