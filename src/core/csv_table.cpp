@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 
 #include "core/atomic_file.h"
 
@@ -97,9 +98,10 @@ CsvTable parse_csv_table(std::string_view text, const std::string& path, std::si
       });
       table.cells_.resize(cells.size());
       if (!headless) {
+        std::set<std::string_view> seen;
         for (const std::string& name : cells) {
           if (name.empty()) throw TableError(place + ": a column has no name");
-          if (std::count(cells.begin(), cells.end(), name) > 1)
+          if (!seen.insert(name).second)
             throw TableError(fmt::format("{}: two columns are called '{}'", place, name));
         }
         table.names_ = std::move(cells);

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Every shipped deck gives the same bits in one piece and in four, with one and with two threads.
 
-    test_resume_decks.py SPHGEO SAME_STATE [--whole] [--seed N] [DECK...]
+    test_resume_decks.py SPHGEO SAME_STATE [--whole] [--seed N] [--set KEY=VALUE]... [DECK...]
 
 Each deck below decks/ (or the ones named) runs to its end with one thread, with two threads, and once more ended
 at three random places (by --max-acoustic-steps, so mostly within an advection step) and resumed, with the number of threads changed each time. Frames, tables,
 summary and the arrays of the last checkpoint must be the same.
 
 So that it takes seconds, the end is where the deck is after SHORT steps, and frames and rows are close enough for
-some of them to fall into each piece. --whole: everything as the deck has it, which takes minutes for each.
+some of them to fall into each piece. --whole: everything as the deck has it, which takes minutes for each; --set makes a
+long one coarser or shorter.
 """
 import argparse
 import json
@@ -102,14 +103,17 @@ def main():
     parser.add_argument("decks", nargs="*")
     parser.add_argument("--whole", action="store_true")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="for every deck that is named")
     args = parser.parse_intermixed_args()
+    if args.set and not args.decks:
+        parser.error("--set needs the decks that it is for")
     found = sorted(p.relative_to(ROOT).as_posix() for p in (ROOT / "decks").rglob("*.yaml"))
     decks = [Path(d).resolve().relative_to(ROOT).as_posix() for d in args.decks] or found
     unknown = [d for d in [*SETTINGS, *(deck for deck, _ in ALSO)] if d not in found]
     for deck in unknown:
         print(f"{deck}: has settings here, but there is no such deck")
-    cases = [(d, [] if args.whole else SETTINGS.get(d, [])) for d in decks]
-    if not args.whole:
+    cases = [(d, args.set if args.whole or args.set else SETTINGS.get(d, [])) for d in decks]
+    if not args.whole and not args.set:
         cases += [(d, settings) for d, settings in ALSO if d in decks]
     failed = len(unknown)
     for deck, settings in cases:
