@@ -225,6 +225,12 @@ template <int Dim>
 typename Recorder<Dim>::Totals Recorder<Dim>::totals() const {
   Totals sum;
   sum.time = world_.clock.time;
+  for (const auto& [name, book] : world_.exchanged()) {
+    sum.mass_in += book.mass;
+    sum.energy_in += book.energy;
+    const Vec3 p = to_space<Dim>(book.momentum);
+    for (std::size_t k = 0; k < 3; ++k) sum.momentum_in[k] += p[static_cast<Index>(k)];
+  }
   const ParticleSet<Dim>* water = world_.find("water");
   if (const ParticleSet<Dim>* soil = world_.find("soil")) add_soil_totals(*soil, sum);
   for (const auto& set : world_.sets())
@@ -357,9 +363,16 @@ std::vector<LedgerRow> Recorder<Dim>::ledger() const {
   const double energy_scale = std::max({std::abs(energy_a), a.kinetic, b.kinetic});
   const auto vec = [](const std::array<double, 3>& v) { return Vec3(v[0], v[1], v[2]); };
   const auto list = [](const std::array<double, 3>& v) { return std::vector<double>(v.begin(), v.end()); };
-  std::vector<LedgerRow> rows{{"mass", "kg", {a.mass}, {b.mass}, {}, relative(b.mass - a.mass, a.mass)},
-          {"momentum", "kg m/s", list(a.momentum), list(b.momentum), {}, relative((vec(b.momentum) - vec(a.momentum)).norm(), a.mass * speed)},
-          {"energy", "J", {energy_a}, {energy_b}, {}, relative(energy_b - energy_a, energy_scale)}};
+  const double mass_in = b.mass_in - a.mass_in, energy_in = b.energy_in - a.energy_in;
+  const Vec3 momentum_in = vec(b.momentum_in) - vec(a.momentum_in);
+  std::vector<LedgerRow> rows{{"mass", "kg", {a.mass}, {b.mass}, {}, relative(b.mass - a.mass - mass_in, std::max(a.mass, b.mass))},
+          {"momentum", "kg m/s", list(a.momentum), list(b.momentum), {}, relative((vec(b.momentum) - vec(a.momentum) - momentum_in).norm(), std::max(a.mass, b.mass) * speed)},
+          {"energy", "J", {energy_a}, {energy_b}, {}, relative(energy_b - energy_a - energy_in, std::max(energy_scale, std::abs(energy_in)))}};
+  if (!world_.exchanged().empty()) {
+    rows[0].exchanged = {mass_in};
+    rows[1].exchanged = {momentum_in.x(), momentum_in.y(), momentum_in.z()};
+    rows[2].exchanged = {energy_in};
+  }
   if (a.water_volume > 0) {
     const std::string cubic = Dim == 2 ? "m2" : "m3";
     rows.push_back({"water_volume", cubic, {a.water_volume}, {b.water_volume}, {}, relative(b.water_volume - a.water_volume, a.water_volume)});

@@ -88,10 +88,8 @@ class DeckRun {
     Recorder<Dim> recorder(world, plan, folder, resumed);
     checkpoint.reader.reset();  // its memory is needed for the neighbor lists
     Index particles = 0;
-    for (const auto& set : world.sets()) {
+    for (const auto& set : world.sets())
       if (set->phase() != "wall") particles += set->size();
-      summary_.particles.emplace_back(set->name(), set->size());
-    }
     set_threads(sensible_threads(particles, options_.threads));
     Keeper<Dim> keeper({world, plan, stepper, recorder}, folder, wall_before_);
 
@@ -166,6 +164,8 @@ class DeckRun {
     summary_.deck = options_.deck;
     summary_.deck_hash = deck_hash(model_);
     summary_.dimension = Dim;
+    // As they are now: what a run began with is not known to one that goes on.
+    for (const auto& set : world.sets()) summary_.particles.emplace_back(set->name(), set->size());
     summary_.threads = threads();
     summary_.advection_steps = world.clock.advection_steps;
     summary_.acoustic_steps = world.clock.acoustic_steps;

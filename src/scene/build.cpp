@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "boundaries/exchange.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/parallel.h"
@@ -31,6 +32,8 @@ double soil_smoothing_length(const Model& model) {
 namespace {
 
 bool has_water(const Model& model) {
+  for (const auto& b : model.boundaries)
+    if (const auto* border = dynamic_cast<const ExchangeBoundary*>(b.get()); border && !border->source_box().empty()) return true;
   return std::any_of(model.bodies.begin(), model.bodies.end(), [&](const Body& b) {
     const MaterialSpec* m = model.material(b.material);
     return m && m->phase() == "water";
@@ -149,12 +152,13 @@ void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
 
 template <int Dim>
 void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics& found) {
-  if (model.boundaries.empty()) return;
-  bool moves = false;
+  bool any = false, moves = false;
   for (const auto& b : model.boundaries) {
-    const auto& wall = dynamic_cast<const WallBoundary&>(*b);
-    moves = moves || wall.motion.has_value();
+    const auto* wall = dynamic_cast<const WallBoundary*>(b.get());
+    any = any || wall;
+    moves = moves || (wall && wall->motion.has_value());
   }
+  if (!any) return;
   const double dp = model.resolution;
   // Pairs use the larger smoothing length of both sets. Of one phase alone, that of the walls is no larger than its own.
   // With water and soil they are that of the larger one: the share of a kernel that lies in walls is asked for at both.
@@ -169,10 +173,12 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
   const Placement placement{dp, support_radius(model), Dim};
   std::vector<WallPart> parts;
   for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
-    const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
-    parts.push_back({{}, wall.solid(placement), !wall.motion});
+    const auto* wall = dynamic_cast<const WallBoundary*>(model.boundaries[b].get());
+    parts.push_back({});
+    if (wall == nullptr) continue;
+    parts.back() = {{}, wall->solid(placement), !wall->motion};
     try {
-      parts.back().points = wall.points(placement);
+      parts.back().points = wall->points(placement);
     } catch (const Error& e) {
       const std::string path = fmt::format("boundaries[{}]", b);
       found.error("E116", model.place_of(path), path, e.what());
@@ -182,7 +188,9 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
   join_walls<Dim>(parts, dp, support_radius(model), has_soil(model) && g > 0 ? Vec3(-model.gravity / g) : Vec3::Zero());
   if (has_soil(model)) mark_corners<Dim>(parts, dp, support_radius(model));
   for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
-    const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
+    const auto* found_wall = dynamic_cast<const WallBoundary*>(model.boundaries[b].get());
+    if (found_wall == nullptr) continue;
+    const WallBoundary& wall = *found_wall;
     const std::vector<WallPoint>& points = parts[b].points;
     const Index first = set.size();
     set.resize(first + static_cast<Index>(points.size()));
@@ -217,6 +225,8 @@ Aabb particles_box(const World<Dim>& world) {
 template <int Dim>
 void set_domain(World<Dim>& world, const Model& model) {
   Aabb box = particles_box(world);
+  for (const auto& b : model.boundaries)
+    if (const auto* border = dynamic_cast<const ExchangeBoundary*>(b.get())) box.extend(border->source_box());
   if (box.empty()) box = {Vec3::Zero(), Vec3::Zero()};
   // What leaves this box is lost: as much room on every side as the scene is large.
   const double room = std::max((box.hi - box.lo).maxCoeff(), 10 * model.resolution);

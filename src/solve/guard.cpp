@@ -160,7 +160,8 @@ void Guard<Dim>::check_lost() {
   for (const auto& [name, lost] : world_.lost()) {
     const auto inside = in_walls_.find(name);
     const Index stuck = inside == in_walls_.end() ? 0 : inside->second;
-    const Index all = initial_.at(name);
+    // With inlets there are more than at the start.
+    const Index all = std::max(initial_.at(name), world_.set(name).size() + lost);
     if (static_cast<double>(lost + stuck) <= budget * static_cast<double>(all)) continue;
     throw UnstableError(
         fmt::format("of {} particles of set '{}', {} have left the domain and {} sit inside a wall at t = {:.6g} s, more than the budget of {:.3g} % "
@@ -230,7 +231,8 @@ std::string Guard<Dim>::suspect(const ParticleSet<Dim>& set, Index i, const std:
   const std::string path = fmt::format("{}[{}]", wall ? "boundaries" : "bodies", part);
   const Place at = model.place_of(path);
   const std::string name = wall ? (part < model.boundaries.size() ? model.boundaries[part]->name : "") : (part < model.bodies.size() ? model.bodies[part].name : "");
-  std::string out = fmt::format("; it belongs to {} '{}' ({}:{}:{})", wall ? "boundary" : "body", name, at.file, at.line, at.column);
+  std::string out = name.empty() ? "; it has entered through a boundary"
+                                 : fmt::format("; it belongs to {} '{}' ({}:{}:{})", wall ? "boundary" : "body", name, at.file, at.line, at.column);
   if (world_.model().body_force && !world_.pull(set.vector(fields::position)[i]).allFinite()) {
     const Place force = model.place_of("body_force");
     out += fmt::format("; body_force is not finite there ({}:{}:{})", force.file, force.line, force.column);
