@@ -59,7 +59,7 @@ void judge(StudyResult& result, const StudyClaim& claim) {
   for (std::size_t k = 0; k < values.size(); ++k)
     levels.push_back({result.runs[k]->spacing, *values[k].value, known ? result.errors[k] : std::nullopt});
   result.convergence = convergence(levels);
-  if (claim.norm) result.convergence.gci.reset();  // a share of an error that goes to zero means nothing
+  if (claim.norm || values.back().reference == 0.0) result.convergence.gci.reset();  // a share of an error that goes to zero means nothing
 }
 
 Offer offer(const StudyResult& result, std::size_t k) {
