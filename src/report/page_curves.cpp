@@ -42,6 +42,7 @@ class Charts {
 /// One axis of time for all charts of the page.
 ChartAxis time_axis(Runs runs) {
   ChartAxis axis{"time", "s", false, {}, {}};
+  if (std::all_of(runs.begin(), runs.end(), is_relaxation)) axis = {"step", "", false, {}, {}};
   for (const RunRecord& run : runs) {
     if (!run.run || run.run->time.empty()) continue;
     axis.low = std::min(axis.low.value_or(run.run->time.front()), run.run->time.front());
