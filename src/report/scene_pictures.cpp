@@ -297,7 +297,7 @@ class Paintings {
       if (column && column->tuples() == frame.points.size())
         for (std::size_t i = 0; i < tints.size(); ++i) {
           const double share = (column->magnitude(i) - row.low) / (row.high - row.low);
-          tints[i] = static_cast<std::uint8_t>(std::clamp(static_cast<int>(share * levels), 0, levels - 1));
+          tints[i] = static_cast<std::uint8_t>(share > 0 ? std::min(share * levels, levels - 1.0) : 0.0);  // NaN: the lowest
         }
       const auto known = run.spacing.find(set);
       const double spacing = known != run.spacing.end() && known->second > 0 ? known->second : 4 / view.scale;
