@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/text.h"
 #include "report/chart.h"
 #include "report/markup.h"
 #include "report/page_parts.h"
@@ -42,6 +43,7 @@ class Charts {
 /// One axis of time for all charts of the page.
 ChartAxis time_axis(Runs runs) {
   ChartAxis axis{"time", "s", false, {}, {}};
+  if (std::all_of(runs.begin(), runs.end(), is_relaxation)) axis = {"step", "", false, {}, {}};
   for (const RunRecord& run : runs) {
     if (!run.run || run.run->time.empty()) continue;
     axis.low = std::min(axis.low.value_or(run.run->time.front()), run.run->time.front());
@@ -128,7 +130,18 @@ std::vector<std::string> chosen_columns(const TimeSeries& probe, const std::stri
 }
 
 /// Columns of one probe that share a unit, in one chart; with several runs a chart a column.
-void add_probe(Runs runs, const std::string& probe, const std::string& unit, const std::vector<std::string>& columns, const std::string& caption, Charts& charts) {
+void add_probe(Runs runs, const std::string& probe, const std::string& unit, std::vector<std::string> columns, std::string caption, Charts& charts) {
+  // What is zero all the time, where others are not, is said in words.
+  const auto zero = [&](const std::string& column) {
+    const TimeSeries* series = runs.front().series(probe);
+    const NamedColumn* c = series ? series->find(column) : nullptr;
+    return c && std::all_of(c->values.begin(), c->values.end(), [](double v) { return v == 0 || std::isnan(v); });
+  };
+  const auto first_zero = std::stable_partition(columns.begin(), columns.end(), [&](const std::string& c) { return !zero(c); });
+  if (first_zero != columns.begin() && first_zero != columns.end()) {
+    caption += (caption.empty() ? "zero: " : "; zero: ") + in_words({first_zero, columns.end()});
+    columns.erase(first_zero, columns.end());
+  }
   Chart chart;
   chart.x = time_axis(runs);
   std::string name = columns.front();

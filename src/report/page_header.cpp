@@ -56,16 +56,20 @@ std::vector<Fact> facts_of(Runs runs, std::size_t k) {
     }
     facts.push_back({"Particles", count_text(sum) + small_text(each)});
   }
-  const double solid = number_at(s, "/steps/solid").value_or(0);
-  facts.push_back({"Simulated time", at(runs, k, "/time_s", As::number, "s") + (runs[k].model ? small_text("of " + html_escaped(number_text(runs[k].model->end_time)) + "\u00a0s") : "")});
-  facts.push_back({"Acoustic steps", at(runs, k, "/steps/acoustic", As::count) + small_text("in " + at(runs, k, "/steps/advection", As::count) + " advection steps" +
-                                     (solid > 0 ? ", " + at(runs, k, "/steps/solid", As::count) + " of solids" : ""))});
+  const bool relaxation = is_relaxation(runs[k]);
+  if (relaxation) facts.push_back({"Relaxation steps", at(runs, k, "/relaxation/steps", As::count)});
+  if (!relaxation) {
+    const double solid = number_at(s, "/steps/solid").value_or(0);
+    facts.push_back({"Simulated time", at(runs, k, "/time_s", As::number, "s") + (runs[k].model ? small_text("of " + html_escaped(number_text(runs[k].model->end_time)) + "\u00a0s") : "")});
+    facts.push_back({"Acoustic steps", at(runs, k, "/steps/acoustic", As::count) + small_text("in " + at(runs, k, "/steps/advection", As::count) + " advection steps" +
+                                       (solid > 0 ? ", " + at(runs, k, "/steps/solid", As::count) + " of solids" : ""))});
+  }
   const double threads = number_at(s, "/threads").value_or(1);
   facts.push_back({"Wall time", at(runs, k, "/wall_s", As::seconds) + small_text(forecast(runs, k, "wall_s", As::seconds)) +
                                     small_text(at(runs, k, "/threads", As::count) + (threads == 1 ? " thread" : " threads"))});
   facts.push_back({"Peak memory", at(runs, k, "/memory_peak_bytes", As::bytes) + small_text(forecast(runs, k, "memory_bytes", As::bytes))});
-  facts.push_back({"On disk", at(runs, k, "/forecast/actual/disk_bytes", As::bytes) + small_text(forecast(runs, k, "disk_bytes", As::bytes))});
-  if (const auto speed = number_at(s, "/particle_updates_per_s_per_core"))
+  if (!relaxation) facts.push_back({"On disk", at(runs, k, "/forecast/actual/disk_bytes", As::bytes) + small_text(forecast(runs, k, "disk_bytes", As::bytes))});
+  if (const auto speed = number_at(s, "/particle_updates_per_s_per_core"); speed && *speed > 0)
     facts.push_back({"Speed", fmt::format("{:.3g}\u00a0million", *speed / 1e6) + small_text("particle updates per second and core")});
   return facts;
 }
@@ -76,7 +80,7 @@ std::string expect_badge(const RunRecord& run) {
   if (!expect.is_array() || expect.empty()) return {};
   const auto met = std::count_if(expect.begin(), expect.end(), [](const Json& e) { return value_at(e, "/pass") == true; });
   const bool all = static_cast<std::size_t>(met) == expect.size();
-  if (text_at(run.summary, "/status") == "stopped") return {};  // measured too early
+  if (text_at(run.summary, "/status") != "done") return {};  // measured too early
   return fmt::format("<span class=\"badge {}\">{} of {} expectation{} met</span>", all ? "good" : "bad", met, expect.size(), expect.size() == 1 ? "" : "s");
 }
 

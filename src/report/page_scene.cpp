@@ -10,8 +10,8 @@ namespace sphgeo {
 
 namespace {
 
-std::string shot_html(const Shot& shot, const std::string& what) {
-  const std::string moment = "t = " + number_text(shot.time) + "\u00a0s";
+std::string shot_html(const Shot& shot, const RunRecord& run, const std::string& what) {
+  const std::string moment = is_relaxation(run) ? "step " + number_text(shot.time) : "t = " + number_text(shot.time) + "\u00a0s";
   return fmt::format("<figure class=\"shot\"><img alt=\"{}\" width=\"{}\" height=\"{}\" src=\"data:image/png;base64,{}\"><figcaption>{}</figcaption></figure>\n",
                      html_escaped(what + ", " + moment), shot.width / 2, shot.height / 2, base64(shot.png), moment);
 }
@@ -33,7 +33,7 @@ std::string scene_html(Runs runs, const ScenePictures& pictures) {
     for (std::size_t t = 0; t < pictures.times.size(); ++t)
       for (std::size_t r = 0; r < runs.size(); ++r) {
         const auto& shot = row.shots[r][t];
-        if (shot) out += shot_html(*shot, row.title + (several ? ", " + runs[r].label : ""));
+        if (shot) out += shot_html(*shot, runs[r], row.title + (several ? ", " + runs[r].label : ""));
         else if (several) out += "<figure class=\"shot\"></figure>\n";
       }
     out += several ? "</div></div>\n" : "</div>\n";

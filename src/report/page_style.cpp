@@ -54,7 +54,8 @@ th.run { border-left: 1px solid var(--rule); padding-left: 14px; }
 td.run { border-left: 1px solid var(--rule); padding-left: 14px; }
 .bar { display: inline-block; height: .55em; min-width: 1px; background: var(--accent); opacity: .75; }
 td.bar-cell { width: 30%; min-width: 90px; }
-.charts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 420px), 1fr)); gap: 26px 34px; }
+.charts { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 370px), 1fr)); gap: 26px 34px; }
+.charts figure { max-width: 600px; }
 figure { margin: 0; min-width: 0; }
 figcaption { font-size: .84rem; color: var(--quiet); }
 .quantity { display: flex; flex-wrap: wrap; align-items: end; justify-content: space-between; gap: 2px 30px; margin: 26px 0 8px; }

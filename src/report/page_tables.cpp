@@ -107,7 +107,8 @@ std::string expect_html(Runs runs) {
     rows += "<tr>" + cell("<strong>" + html_escaped(name) + "</strong>" + small_text(what_measured(said)) + (said ? small_text(html_escaped(said->source)) : "") + notes, "wide") +
             row + (several ? reference + tolerance : "") + "</tr>\n";
   }
-  return table("", head, rows);
+  const bool early = std::any_of(runs.begin(), runs.end(), [](const RunRecord& run) { return text_at(run.summary, "/status") != "done"; });
+  return (early ? "<p class=\"quiet\">A run that did not reach its end was measured as far as it came.</p>\n" : "") + table("", head, rows);
 }
 
 std::string time_html(Runs runs) {

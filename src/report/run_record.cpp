@@ -50,6 +50,7 @@ void read_probes(RunRecord& record) {
   const std::string folder = record.folder + "/probes";
   std::vector<std::pair<std::string, std::string>> files;  // name, path
   if (record.model) {
+    files.emplace_back(relaxation_probe, folder + "/" + relaxation_probe + ".csv");
     for (const auto& p : record.model->probes) files.emplace_back(p->name, folder + "/" + file_name_of(p->name) + ".csv");
   } else {
     std::error_code ignored;
@@ -125,6 +126,8 @@ std::vector<RunRecord> read_runs(const std::vector<std::string>& folders) {
   for (std::size_t i = 0; i < records.size(); ++i) records[i].label = labels[i];
   return records;
 }
+
+bool is_relaxation(const RunRecord& run) { return value_at(run.summary, "/relaxation").is_object(); }
 
 const Json& value_at(const Json& json, const std::string& pointer) {
   static const Json none;

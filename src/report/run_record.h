@@ -52,6 +52,9 @@ RunRecord read_run(const std::string& folder);
 /// Reads several and gives them labels that differ.
 std::vector<RunRecord> read_runs(const std::vector<std::string>& folders);
 
+/// Whether `sphgeo relax` made it: its times are the numbers of its steps.
+bool is_relaxation(const RunRecord& run);
+
 /// What stands at "/steps/advection", as a number; empty when it is missing, null or something else.
 std::optional<double> number_at(const nlohmann::ordered_json& json, const std::string& pointer);
 /// The same as text; "" when it is missing or something else.

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "core/parallel.h"
-#include "output/vtu_reader.h"
 #include "report/color_map.h"
+#include "report/moments.h"
 #include "report/painter.h"
 
 namespace sphgeo {
@@ -18,37 +18,34 @@ namespace {
 
 constexpr int levels = 36;                     ///< colours of a quantity
 constexpr std::size_t kept_values = 8'000'000; ///< numbers of frames held in memory at a time; more are read again
-constexpr double clipped_share = 0.01;         ///< of all values, at each end of the colours
-constexpr double clipped_share_strain = 0.02;  ///< plastic strain is large in few places
 
 /// What a row may show.
 struct Quantity {
-  std::string field, title, unit;
-  std::string of;  ///< the kind of set that has it; empty: of all
+  std::string field, title;
+  std::string of;              ///< the kind of set that has it; empty: of all
+  double clipped = 0.01;       ///< share of all values beyond each end of the colours
+  bool from_zero = false;      ///< the colours begin at zero
 };
 
 /// "water", "soil", "solids": solids may be several sets.
 std::string kind_of(const std::string& set) { return set.starts_with("solids") ? "solids" : set; }
 
 const std::vector<Quantity>& known_quantities() {
-  static const std::vector<Quantity> known{{"velocity", "Speed", "m/s", ""},
-                                           {"pressure", "Pressure of the water", "Pa", "water"},
-                                           {"plastic_strain", "Plastic strain of the soil", "", "soil"},
-                                           {"von_mises", "von Mises stress of the solids", "Pa", "solids"}};
+  static const std::vector<Quantity> known{{"velocity", "Speed", "", 0.01, true},
+                                           {"pressure", "Pressure of the water", "water"},
+                                           {"plastic_strain", "Plastic strain of the soil", "soil", 0.02, true},  // large in few places
+                                           {"von_mises", "von Mises stress of the solids", "solids", 0.01, true}};
   return known;
 }
 
-/// What is drawn of the boundaries.
-struct WallLines {
-  std::vector<std::pair<Vec3, Vec3>> lines;
-  Aabb box;
-};
+bool is_known(const std::string& field) {
+  return std::any_of(known_quantities().begin(), known_quantities().end(), [&](const Quantity& q) { return q.field == field; });
+}
 
-/// All sets of a run at one moment.
-struct Moment {
-  std::map<std::string, VtuFrame> sets;
-  const WallLines* walls = nullptr;
-};
+const Quantity* titled(const std::string& title) {
+  const auto it = std::find_if(known_quantities().begin(), known_quantities().end(), [&](const Quantity& q) { return q.title == title; });
+  return it == known_quantities().end() ? nullptr : &*it;
+}
 
 struct RunFrames {
   const RunRecord* run = nullptr;
@@ -57,12 +54,6 @@ struct RunFrames {
   Aabb box;    ///< of the particles at all moments
   Aabb walls;
 };
-
-/// The frame of a set at exactly this time, or nullptr.
-const PvdFile::Frame* frame_at(const std::vector<PvdFile::Frame>& frames, double time) {
-  const auto it = std::find_if(frames.begin(), frames.end(), [&](const auto& f) { return f.time == time; });
-  return it == frames.end() ? nullptr : &*it;
-}
 
 std::vector<double> times_of(const RunRecord& run) {
   std::set<double> times;
@@ -80,19 +71,21 @@ class Paintings {
     if (!ranges_.empty()) return;
     // A deck may write other fields only: any of them is better than none.
     all_fields_ = true;
-    kept_.clear();
-    values_ = 0;
+    reader_ = MomentReader(kept_values, [](const std::string&) { return true; });
     survey();
     quantities_.clear();
     for (const auto& [field, range] : ranges_)
-      if (field != "id" && field != "part" && quantities_.size() < 2) quantities_.push_back({field, field, range.unit, ""});
+      if (field != "id" && field != "part" && quantities_.size() < 2) {
+        quantities_.push_back({field, field, ""});
+        std::replace(quantities_.back().title.begin(), quantities_.back().title.end(), '_', ' ');
+      }
   }
 
   ScenePictures operator()() {
     ScenePictures out;
     out.times = times_;
     for (const Quantity& q : quantities_) {
-      const auto range = ranges_.find(q.field);
+      const auto range = ranges_.find(all_fields_ ? q.field : q.title);
       if (range == ranges_.end()) continue;
       out.rows.push_back({q.title, range->second.unit, range->second.low, range->second.high, range->second.clipped,
                           std::vector(runs_.size(), std::vector<std::optional<Shot>>(times_.size()))});
@@ -101,7 +94,7 @@ class Paintings {
     if (times_.empty()) return out;
     if (out.rows.empty()) {  // nothing differs from place to place: the particles as such
       out.rows.push_back({"Particles", "", 0, 0, false, std::vector(runs_.size(), std::vector<std::optional<Shot>>(times_.size()))});
-      fields_.push_back({"", "", "", "none"});
+      fields_.push_back({"", "", "none"});
     }
     int width = wishes_.width;
     for (int attempt = 0; attempt < 6; ++attempt) {
@@ -110,7 +103,7 @@ class Paintings {
       const double share = std::sqrt(static_cast<double>(wishes_.most_bytes) / static_cast<double>(out.bytes()));
       width = std::max(60, static_cast<int>(width * std::min(0.85, 0.95 * share)));
     }
-    out.problems.assign(problems_.begin(), problems_.end());
+    out.problems.assign(reader_.problems().begin(), reader_.problems().end());
     return out;
   }
 
@@ -153,53 +146,15 @@ class Paintings {
       }
   }
 
-  bool wanted(const std::string& field) const {
-    if (all_fields_) return true;
-    return std::any_of(known_quantities().begin(), known_quantities().end(), [&](const Quantity& q) { return q.field == field; });
+  /// The known quantity that a field of this set is; nullptr when it is none.
+  static const Quantity* shown_by(const std::string& field, const std::string& set) {
+    for (const Quantity& q : known_quantities())
+      if (q.field == field && (q.of.empty() || q.of == kind_of(set))) return &q;
+    return nullptr;
   }
 
-  Moment load(const RunFrames& run, double time) {
-    Moment moment;
-    VtuReading reading;
-    reading.wanted = [&](const std::string& field) { return wanted(field); };
-    for (const auto& [set, frames] : run.run->frames)
-      if (const PvdFile::Frame* frame = frame_at(frames, time)) {
-        try {
-          if (set == "boundaries") moment.walls = &walls_of(frame->file);
-          else moment.sets.emplace(set, read_vtu(frame->file, reading));
-        } catch (const Error& e) {
-          problems_.insert(e.what());
-        }
-      }
-    return moment;
-  }
-
-  /// Walls at rest have one file for all times.
-  const WallLines& walls_of(const std::string& file) {
-    if (const auto known = walls_.find(file); known != walls_.end()) return known->second;
-    const VtuFrame frame = read_vtu(file);
-    WallLines walls;
-    for (const Vec3& p : frame.points) walls.box.extend(p);
-    for (const auto& [a, b] : outline(frame.points, frame.corners_per_cell, frame.corners))
-      walls.lines.emplace_back(frame.points[static_cast<std::size_t>(a)], frame.points[static_cast<std::size_t>(b)]);
-    return walls_.emplace(file, std::move(walls)).first->second;
-  }
-
-  /// From memory while the frames are small.
   const Moment& moment(std::size_t run, std::size_t time, Moment& scratch) {
-    if (const auto it = kept_.find({run, time}); it != kept_.end()) return it->second;
-    Moment loaded = load(runs_[run], *runs_[run].moments[time]);
-    std::size_t values = 0;
-    for (const auto& [set, frame] : loaded.sets) {
-      values += 3 * frame.points.size();
-      for (const VtuColumn& c : frame.point_fields) values += c.values.size();
-    }
-    if (values_ + values <= kept_values) {
-      values_ += values;
-      return kept_.emplace(std::pair{run, time}, std::move(loaded)).first->second;
-    }
-    scratch = std::move(loaded);
-    return scratch;
+    return reader_(*runs_[run].run, *runs_[run].moments[time], scratch);
   }
 
   /// Reads the frames once: which quantities there are, in which ranges, and where.
@@ -211,27 +166,32 @@ class Paintings {
         if (!runs_[r].moments[t]) continue;
         Moment scratch;
         const Moment& now = moment(r, t, scratch);
-        if (now.walls) runs_[r].walls.extend(now.walls->box);
+        for (const WallLines* walls : now.walls) runs_[r].walls.extend(walls->box);
         for (const auto& [set, frame] : now.sets) {
           look(runs_[r], set, frame, t == 0);
           for (const VtuColumn& c : frame.point_fields) {
-            units[c.name] = c.unit;
+            const Quantity* q = shown_by(c.name, set);
+            if (!q && !all_fields_) continue;
+            const std::string& title = q ? q->title : c.name;
+            units[title] = c.unit;
             const std::size_t stride = 1 + c.tuples() / 50'000;
             for (std::size_t i = 0; i < c.tuples(); i += stride)
-              if (const double v = c.magnitude(i); std::isfinite(v)) (t == 0 && times_.size() > 2 ? at_start : samples)[c.name].push_back(v);
+              if (const double v = c.magnitude(i); std::isfinite(v)) (t == 0 && times_.size() > 2 ? at_start : samples)[title].push_back(v);
           }
         }
       }
-    for (auto& [field, values] : samples) {
-      std::optional<Range> range = range_of(values, field);
+    for (auto& [title, values] : samples) {
+      const Quantity* known = titled(title);
+      const Quantity rules = known ? *known : Quantity{};
+      std::optional<Range> range = range_of(values, rules);
       // The first moment is what the deck says, not what came of it: it may widen the range, but not by far.
-      values.insert(values.end(), at_start[field].begin(), at_start[field].end());
-      const std::optional<Range> all = range_of(values, field);
+      values.insert(values.end(), at_start[title].begin(), at_start[title].end());
+      const std::optional<Range> all = range_of(values, rules);
       if (all && (!range || all->high - all->low < 2 * (range->high - range->low))) range = all;
       if (!range) continue;
       range->clipped = range->clipped || !all || all->clipped || all->high > range->high || all->low < range->low;
-      range->unit = units[field];
-      ranges_[field] = *range;
+      range->unit = units[title];
+      ranges_[title] = *range;
     }
   }
 
@@ -259,21 +219,30 @@ class Paintings {
     run.box.extend(box.grown(0.5 * run.spacing[set]));
   }
 
-  static std::optional<Range> range_of(std::vector<double> values, const std::string& field) {
+  static std::optional<Range> range_of(std::vector<double> values, const Quantity& rules) {
     if (values.empty()) return {};
     std::sort(values.begin(), values.end());
     const auto at = [&](double part) { return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))]; };
-    const double share = field == "plastic_strain" ? clipped_share_strain : clipped_share;
-    Range range{at(share), at(1 - share), "", false};
+    Range range{at(rules.clipped), at(1 - rules.clipped), "", false};
     // Where almost all is at rest, what moves still deserves its colours.
     if (!(range.high > range.low)) range = {values.front(), values.back(), "", false};
-    if (field == "velocity" || (range.low > 0 && range.low < 0.3 * range.high) || (range.low < 0 && -range.low < 0.1 * range.high)) range.low = 0;
+    if (rules.from_zero || (range.low > 0 && range.low < 0.3 * range.high) || (range.low < 0 && -range.low < 0.1 * range.high)) range.low = 0;
     if (!(range.high - range.low > 1e-12 * std::max(std::abs(range.high), std::abs(range.low)))) return {};
     range.clipped = values.back() > range.high || values.front() < range.low;
     return range;
   }
 
-  static Aabb window(const RunFrames& run) { return picture_box(run.box, run.walls); }
+  /// What the pictures of a run show; of runs of the same scene the same.
+  Aabb window(const RunFrames& run) const {
+    Aabb particles = run.box, walls = run.walls;
+    const std::string title = text_at(run.run->summary, "/title");
+    for (const RunFrames& other : runs_) {
+      if (title.empty() || text_at(other.run->summary, "/title") != title || dimension(*other.run) != dimension(*run.run)) continue;
+      particles.extend(other.box);
+      walls.extend(other.walls);
+    }
+    return picture_box(particles, walls);
+  }
 
   int dimension(const RunRecord& run) const {
     if (run.model) return run.model->dimension;
@@ -317,8 +286,8 @@ class Paintings {
     }
     std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     const auto draw_walls = [&] {
-      if (now.walls)
-        for (const auto& [a, b] : now.walls->lines) painter.line(a, b, 2, wall);
+      for (const WallLines* walls : now.walls)
+        for (const auto& [a, b] : walls->lines) painter.line(a, b, 2, wall);
     };
     if (!view.flat) draw_walls();
     for (const auto& [layer, entry] : order) {
@@ -328,7 +297,7 @@ class Paintings {
       if (column && column->tuples() == frame.points.size())
         for (std::size_t i = 0; i < tints.size(); ++i) {
           const double share = (column->magnitude(i) - row.low) / (row.high - row.low);
-          tints[i] = static_cast<std::uint8_t>(std::clamp(static_cast<int>(share * levels), 0, levels - 1));
+          tints[i] = static_cast<std::uint8_t>(share > 0 ? std::min(share * levels, levels - 1.0) : 0.0);  // NaN: the lowest
         }
       const auto known = run.spacing.find(set);
       const double spacing = known != run.spacing.end() && known->second > 0 ? known->second : 4 / view.scale;
@@ -342,11 +311,8 @@ class Paintings {
   std::vector<double> times_;
   std::vector<RunFrames> runs_;
   std::vector<Quantity> quantities_, fields_;
-  std::map<std::string, Range> ranges_;
-  std::map<std::pair<std::size_t, std::size_t>, Moment> kept_;
-  std::map<std::string, WallLines> walls_;  ///< by file
-  std::size_t values_ = 0;  ///< numbers in kept_
-  std::set<std::string> problems_;
+  std::map<std::string, Range> ranges_;  ///< by title, of unknown quantities by field
+  MomentReader reader_{kept_values, [](const std::string& field) { return is_known(field); }};
   bool all_fields_ = false;
 };
 
