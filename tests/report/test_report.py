@@ -161,8 +161,8 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         here = Path(name)
         one, two, both = here / "one", here / "two", here / "both.html"
-        call("run", ROOT / "decks" / "quickstart.yaml", "-o", one, "-q", "--set", "end_time=0.3")
-        call("run", ROOT / "decks" / "quickstart.yaml", "-o", two, "-q", "--set", "end_time=0.2", "--no-report")
+        call("run", ROOT / "decks/basics/gate_and_sill.yaml", "-o", one, "-q", "--set", "end_time=0.3")
+        call("run", ROOT / "decks/basics/gate_and_sill.yaml", "-o", two, "-q", "--set", "end_time=0.2", "--no-report")
         if (two / "report.html").exists():
             wrong.append("--no-report wrote a report")
         wrong += check_page((one / "report.html").read_text(), [one], 6)
@@ -173,7 +173,7 @@ def main():
         if subprocess.run([sphgeo, "report", here], capture_output=True).returncode != 5:
             wrong.append("a folder without a run is no error of files")
         scene = here / "scene.png"
-        call("check", ROOT / "decks" / "quickstart.yaml", "--no-calibrate", "--preview", scene)
+        call("check", ROOT / "decks/basics/gate_and_sill.yaml", "--no-calibrate", "--preview", scene)
         width, height, rows, _ = png_pixels(scene.read_bytes())
         if width < 400 or height < 100 or len({byte for row in rows for byte in row}) < 4:  # paper, water, walls, probes
             wrong.append(f"the preview of {width} x {height} pixels shows nothing")
