@@ -104,7 +104,7 @@ std::vector<CatalogGroup> catalog() {
   CatalogEntry body = section<Body>();
   body.keys.push_back({"copies", "makes many bodies of this one", "", "a mapping of the keys of 'copies'", "none"});
   return {{"section", "deck sections", "The keys of the deck and of the mappings in it.",
-           {section<Model>(), body, section<Copies>(), section<Motion>(), section<Output>(), section<Frames>(), section<Numerics>(), section<Relaxation>(), section<Expect>()}},
+           {section<Model>(), body, section<Copies>(), section<Motion>(), section<Waves>(), section<Output>(), section<Frames>(), section<Numerics>(), section<Relaxation>(), section<Expect>()}},
           types(Registry<MaterialSpec>::get(), "materials", "What bodies are made of: entries of `materials`."),
           types(Registry<Shape>::get(), "shapes", "Regions of space, for bodies and walls."),
           types(Registry<BoundarySpec>::get(), "boundaries", "Borders of the scene: entries of `boundaries`."),
