@@ -44,11 +44,25 @@ def old_column(columns, name, change, kind):
     raise NoMeaning(f"the column {name} of a {kind} probe belongs to the axes")
 
 
+def window(times, values, low, high):
+    """Samples between two times, and interpolated at them."""
+    all_of = [(t, v) for t, v in zip(times, values) if not math.isnan(v)]
+
+    def at(time):
+        for (t0, y0), (t1, y1) in zip(all_of, all_of[1:]):
+            if t0 <= time <= t1:
+                return [(time, y0 + (y1 - y0) * (time - t0) / (t1 - t0))]
+        return []
+
+    inside = [p for p in all_of if low <= p[0] <= high]
+    first = at(low) if not inside or inside[0][0] > low else []
+    last = at(high) if not inside or inside[-1][0] < high else []
+    return first + inside + last
+
+
 def reduce(times, values, claim):
     """One number from a column, as the program reduces it."""
-    low = claim["from"] if claim["from"] != "auto" else -math.inf
-    high = claim["to"] if claim["to"] != "auto" else math.inf
-    pairs = [(t, v) for t, v in zip(times, values) if low <= t <= high and not math.isnan(v)]
+    pairs = window(times, values, claim["from"] if claim["from"] != "auto" else -math.inf, claim["to"] if claim["to"] != "auto" else math.inf)
     if not pairs:
         raise NoMeaning("no sample lies within its times")
     t, y = [p[0] for p in pairs], [p[1] for p in pairs]

@@ -36,10 +36,9 @@ def percent(margin):
 
 def cell(variants):
     """One group of variants of one deck: the worst margin and its claim."""
+    variants = [v for v in variants if "not_applicable" not in v]
     if not variants:
-        return ""
-    if "not_applicable" in variants[0]:
-        return "not applicable"
+        return "-"
     broken = [v for v in variants if v["wrong"]]
     margins = [(m, name) for v in variants for name, m in v["claims"].items()]
     worst = max(margins, default=None)
@@ -65,7 +64,7 @@ def decks(results, plan, options):
             cells.append(cell(of_group))
         for variant, v in variants.items():
             if "not_applicable" in v:
-                without.append(f"- `{name}`, {v['group']}: {v['not_applicable']}.")
+                without.append(f"- `{name}`, {variant}: {v['not_applicable']}.")
                 continue
             runs += 1
             judged += len(v["claims"])
