@@ -112,6 +112,27 @@ TEST_SUITE("solve") {
     }
   }
 
+  TEST_CASE("a step of solids that collapses stops the run, before it is cut into a thousand million parts") {
+    Rig<2> rig(all_phases);
+    rig.plan_it();
+    rig.advance(1);
+    StepLimits limits = rig.plan->limits();
+    Guard<2>& guard = rig.stepper->guard();
+    const double dt = limits.acoustic;
+    guard.before_step(limits, dt);
+    for (const double odd : {1e-5 * limits.solid, 0.0, std::numeric_limits<double>::quiet_NaN()}) {
+      CAPTURE(odd);
+      StepLimits worse = limits;
+      worse.solid = odd;
+      CHECK_THROWS_WITH_AS(guard.before_step(worse, dt), doctest::Contains("the solid step collapsed"), UnstableError);
+    }
+    // The real thing: an acceleration that is a number and lets no step be long enough.
+    rig.world.set("solids").vector(fields::acceleration)[0] = Vec<2>(1e30, 0);
+    const auto found = verdict(rig);
+    REQUIRE(found);
+    CHECK(found->cause == "step");
+  }
+
   TEST_CASE("a volume fraction out of bounds stops the run") {
     for (const double odd : {-0.01, 4.01}) {
       CAPTURE(odd);
@@ -136,15 +157,41 @@ TEST_SUITE("solve") {
     Rig<2> rig(all_phases, {"numerics.max_lost_fraction=0.001"});
     rig.plan_it();
     rig.advance(1);
-    // Deeper than half a spacing below the floor, between its particles.
-    rig.soil().vector(fields::position)[0] = Vec<2>(0.5, -0.2);
-    rig.soil().vector(fields::velocity)[0].setZero();
     const long before = rig.world.clock.advection_steps;
     std::optional<Instability> found;
-    for (int step = 0; step < 16 && !found; ++step) found = verdict(rig);
+    for (int step = 0; step < 16 && !found; ++step) {
+      // Deeper than half a spacing below the floor; its forces may throw it out, so it is put back each time.
+      rig.soil().vector(fields::position)[0] = Vec<2>(0.5, -0.17);
+      rig.soil().vector(fields::velocity)[0].setZero();
+      rig.arrange();
+      found = verdict(rig);
+    }
     REQUIRE(found);
     CHECK(found->set == "soil");
-    CHECK((found->cause == "penetration" || found->cause == "speed"));
+    CHECK(found->cause == "penetration");
     CHECK(rig.world.clock.advection_steps <= before + 16);
+  }
+
+  TEST_CASE("what is clamped inside a wall is not lost") {
+    Rig<2> rig(R"(
+dimension: 2
+resolution: 0.05
+gravity: 9.81
+end_time: 1
+materials:
+  - {name: water, type: water, sound_speed: 20}
+  - {name: rubber, type: elastic, density: 1200, youngs_modulus: 1e6}
+bodies:
+  - {name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [1, 0.5, 0.3]}, pressure: hydrostatic}
+  - name: shelf
+    material: rubber
+    shape: {type: box, min: [-0.15, 0, 0.4], max: [0.4, 0.5, 0.5]}
+    clamped: [{shape: {type: box, min: [-1, -1, -1], max: [0, 1, 1]}}]
+boundaries: [{name: tank, type: tank, min: [0, 0, 0], max: [1, 0.5, 1], open: [top]}]
+)");
+    rig.plan_it();
+    for (int step = 0; step < 20; ++step) CHECK_FALSE(verdict(rig));
+    for (const auto& [name, value] : rig.stepper->guard().extremes())
+      if (name == "in_walls_skin") CHECK(value == 0);
   }
 }
