@@ -64,18 +64,36 @@ void check_in_walls(World<Dim>& world, const ParticleSet<Dim>& set, Diagnostics&
   struct Clash {
     Index count = 0, body = -1, wall = -1;
     Vec3 at = Vec3::Zero();
-  } clash;
-  for (Index i = 0; i < set.size(); ++i) {
-    if (set.has(fields::clamp) && set.tag(fields::clamp)[i] >= 0) continue;
-    bool close = false;
-    grid.for_each_in_reach(x[i], 0.45 * set.spacing(), [&](Index j, double) {
-      if (clash.count == 0 && !close) clash.wall = walls->tag(fields::part)[j];
-      close = true;
-    });
-    if (close && clash.count++ == 0) {
-      clash.body = set.tag(fields::part)[i];
-      clash.at = to_space<Dim>(x[i]);
+  };
+  // Those nearer than this many spacings.
+  const auto nearer_than = [&](double spacings) {
+    Clash clash;
+    for (Index i = 0; i < set.size(); ++i) {
+      if (set.has(fields::clamp) && set.tag(fields::clamp)[i] >= 0) continue;
+      bool close = false;
+      grid.for_each_in_reach(x[i], spacings * set.spacing(), [&](Index j, double) {
+        if (clash.count == 0 && !close) clash.wall = walls->tag(fields::part)[j];
+        close = true;
+      });
+      if (close && clash.count++ == 0) {
+        clash.body = set.tag(fields::part)[i];
+        clash.at = to_space<Dim>(x[i]);
+      }
     }
+    return clash;
+  };
+  const Clash clash = nearer_than(0.45);
+  if (clash.count == 0 && set.phase() == "soil") {
+    // Soil is pushed off a wall from 0.85 spacings on (see SoilWallPair), with its bulk modulus.
+    const Clash pushed = nearer_than(0.7);
+    if (pushed.count == 0) return;
+    const std::string path = fmt::format("bodies[{}].shape", pushed.body);
+    found.warning("W134", model.place_of(path), path,
+                  fmt::format("soil starts with a push: {} of its particles lie nearer than 0.7 spacings to a particle of a wall, one of body '{}' at {}, beside boundary '{}'",
+                              pushed.count, model.bodies[static_cast<std::size_t>(pushed.body)].name, point_text(pushed.at),
+                              model.boundaries[static_cast<std::size_t>(pushed.wall)]->name),
+                  "a wall along the lattice, or a start half a spacing away from it, starts at rest");
+    return;
   }
   if (clash.count == 0) return;
   const std::string path = fmt::format("bodies[{}].shape", clash.body);

@@ -233,4 +233,47 @@ bodies:
   CHECK(found.items()[0].id == "W130");
 }
 
+TEST_CASE("soil that starts too near to an oblique wall: a warning that it is pushed; none along the lattice") {
+  for (const bool oblique : {false, true}) {
+    CAPTURE(oblique);
+    const std::string turn = oblique ? "17 deg" : "0 deg";
+    const Model model = read_deck_text(R"(
+dimension: 2
+resolution: 0.05
+end_time: 1
+materials: [{name: sand, type: soil, density: 2600, volume_fraction: 0.6, youngs_modulus: 5e6, friction_angle: 30 deg}]
+bodies:
+  - name: bank
+    material: sand
+    filling: relaxed
+    shape: {type: transform, rotate: )" + turn + R"(, of: {type: box, min: [0, 0, 0], max: [1, 0.2, 0.3]}}
+boundaries:
+  - name: slope
+    type: wall
+    shape: {type: transform, rotate: )" + turn + R"(, of: {type: box, min: [-0.5, 0, -0.5], max: [1.5, 0.2, 0]}}
+)", {}, "deck", SPHGEO_SOURCE_DIR);
+    Diagnostics found;
+    const Scene<2> scene = build_scene<2>(model, found);
+    check_scene(scene, found);
+    const auto& x = scene.world->set("soil").vector(fields::position);
+    const auto& y = scene.world->set("walls").vector(fields::position);
+    int near = 0;
+    for (Index i = 0; i < x.size(); ++i) {
+      bool close = false;
+      for (Index j = 0; j < y.size(); ++j) close = close || (x[i] - y[j]).norm() < 0.7 * 0.05;
+      near += close ? 1 : 0;
+    }
+    bool warned = false;
+    for (const Diagnostic& d : found.items()) {
+      CHECK(d.id == "W134");
+      CAPTURE(d.message);
+      CAPTURE(near);
+      CHECK(d.message.find(": " + std::to_string(near) + " of its particles") != std::string::npos);
+      CHECK(d.place.line > 0);
+      warned = true;
+    }
+    CHECK(warned == oblique);
+  }
+}
+
 }
