@@ -185,7 +185,7 @@ void check_switched_off(const Model& model, Diagnostics& found) {
     const std::string path = fmt::format("without[{}]", k);
     if (std::find(can.begin(), can.end(), name) != can.end()) {
       for (const auto& entry : EffectRegistry::all())
-        if (entry.info.name == name) found.warning("W134", model.place_of(path), path, fmt::format("effect '{}' is switched off: {}", name, entry.info.when_off), "");
+        if (entry.info.name == name) found.warning("W136", model.place_of(path), path, fmt::format("effect '{}' is switched off: {}", name, entry.info.when_off), "");
     } else if (std::find(all.begin(), all.end(), name) != all.end()) {
       found.error("E135", model.place_of(path), path, fmt::format("effect '{}' cannot be switched off", name), "these can: " + in_words(can));
     } else {

@@ -109,7 +109,7 @@ TEST_SUITE("scene") {
   }
 
   TEST_CASE("an effect is switched off with a warning, an unknown one or one that is needed not at all") {
-    CHECK(findings(pool + tank + "without: [drag]\n") == std::multiset<std::string>{"W134"});
+    CHECK(findings(pool + tank + "without: [drag]\n") == std::multiset<std::string>{"W136"});
     CHECK(findings(pool + tank + "without: [water_momentum]\n") == std::multiset<std::string>{"E135"});
     CHECK(findings(pool + tank + "without: [drga]\n") == std::multiset<std::string>{"E135"});
   }
