@@ -179,7 +179,7 @@ double estimate_layers(const Shape& shape, double dp, int dim, double thickness,
   if (!box.lo.allFinite() || !box.hi.allFinite()) return std::numeric_limits<double>::infinity();
   const double sign = outside ? -1.0 : 1.0;
   return sampled_volume(
-             box, dim, [&](const Vec3& p) { return sign * shape.signed_distance(p); },
+             box, dim, [&](const Vec3& p) { return sign * distance_bound(shape, p); },  // exact ones of composed shapes are dear
              [&](double d, double reach) { return overlap(d, reach, -thickness, 0.0); }) /
          std::pow(dp, dim);
 }
