@@ -191,6 +191,7 @@ int main(int argc, char** argv) {
       ->check(whole)
       ->type_name("N");
   run_app->add_flag("--verify", run.verify, "exit with 4 when a result under 'expect' is not met");
+  run_app->add_flag_callback("--no-report", [&] { run.report = false; }, "do not write report.html at the end");
   run_app->add_flag("-q,--quiet", run.quiet, "no progress and no time table");
   run_app->callback([&] { code = run_guarded([&] { return run_command(run); }); });
 
@@ -200,6 +201,7 @@ int main(int argc, char** argv) {
   check_app->add_flag("--explain", check.explain,
                       "print the plan: what runs and why, lists, fields, memory");
   check_app->add_flag("--json", check.json, "the plan and the forecast as JSON");
+  check_app->add_option("--preview", check.preview, "paint the scene before it runs into this PNG")->type_name("FILE");
   check_app->add_flag_callback("--no-calibrate", [&] { check.calibrate = false; },
                                "do not time a few steps: the forecast says nothing of the time");
   check_app->add_option("--threads", check.threads, "number of threads of the forecast run")
@@ -248,6 +250,23 @@ int main(int argc, char** argv) {
   study_app->add_flag("-q,--quiet", study.quiet, "say nothing but results");
   study_app->callback([&] { code = run_guarded([&] { return study_command(study); }); });
 
+  CompareOptions compare;
+  CLI::App* compare_app = app.add_subcommand("compare", "compare a run with another run or with a baseline");
+  compare_app->add_option("run", compare.run, "the folder of the run")->required()->type_name("RUN");
+  compare_app->add_option("baseline", compare.baseline, "a run folder, or a file that --update has written")
+      ->required()
+      ->type_name("BASELINE");
+  compare_app->add_option("--tolerances", compare.tolerances, "a YAML file of tolerances")->type_name("FILE");
+  CLI::Option* update = compare_app->add_flag("--update", compare.update, "write the run to the file as its new baseline");
+  compare_app->add_flag("--json", compare.json, "print JSON")->excludes(update);
+  compare_app->add_flag("--all", compare.all, "list all that was compared")->excludes(update);
+  compare_app->callback([&] { code = run_guarded([&] { return compare_command(compare); }); });
+  ReportOptions report;
+  CLI::App* report_app = app.add_subcommand("report", "write a page about one run, or several side by side");
+  report_app->add_option("runs", report.runs, "the folders of the runs")->required()->type_name("RUN...");
+  report_app->add_option("-o,--output", report.output, "the page (default: report.html in the folder of the run)")->type_name("FILE");
+  report_app->callback([&] { code = run_guarded([&] { return report_command(report); }); });
+
   CLI::App* list_app =
       app.add_subcommand("list", "print all types, deck sections, effects and fields");
   list_app->callback([&] { code = run_guarded(list_command); });
@@ -270,6 +289,8 @@ int main(int argc, char** argv) {
   CLI::App* bench_app =
       app.add_subcommand("bench", "measure the speed of the pair loops on fixed scenes");
   bench_app->add_flag("--json", bench.json, "print JSON");
+  bench_app->add_flag("--effects", bench.effects,
+                      "measure what effects would cost that a scene does not call for");
   bench_app->add_option("--scene", bench.scenes, "only this scene; may be repeated")
       ->allow_extra_args(false)
       ->type_name("NAME");

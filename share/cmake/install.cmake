@@ -8,7 +8,7 @@ include(GNUInstallDirs)
 set(data ${CMAKE_INSTALL_DATADIR}/sphgeo)
 install(TARGETS sphgeo RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY decks schemas DESTINATION ${data})
-install(DIRECTORY share/reference share/assets share/plot share/validation DESTINATION ${data}/share
+install(DIRECTORY share/reference share/assets share/plot share/paraview share/validation DESTINATION ${data}/share
   USE_SOURCE_PERMISSIONS PATTERN __pycache__ EXCLUDE)
 install(FILES share/doc/reference.md README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)

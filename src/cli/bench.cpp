@@ -178,6 +178,7 @@ Measured measure(const std::string& deck, int thread_count, const BenchOptions& 
 }  // namespace
 
 int bench_command(const BenchOptions& options) {
+  if (options.effects) return bench_effects_command(options);
   std::vector<std::string> names;
   for (const BenchScene& s : scenes) names.push_back(s.name);
   for (const std::string& wanted : options.scenes)

@@ -81,12 +81,14 @@ CatalogGroup effects() {
   for (const EffectRegistry::Entry& e : EffectRegistry::all())
     g.entries.push_back({e.info.name, e.info.sentence, {},
                          {{"stage", stage_name(e.info.stage)}, {"equations", e.info.equations},
-                          {"runs", e.info.supporting ? "when an effect, a probe or a frame reads what it computes" : "whenever the scene has what it acts on"}}});
+                          {"runs", e.info.supporting ? "when an effect, a probe or a frame reads what it computes" : "whenever the scene has what it acts on"},
+                          {"without it", e.info.when_off.empty() ? "cannot be switched off" : e.info.when_off}}});
   return g;
 }
 
 CatalogGroup fields_group() {
-  constexpr const char* types[] = {"a number", "a vector", "a whole number", "a whole number"};
+  constexpr const char* types[] = {"a number", "a vector", "a symmetric tensor", "a whole number", "a whole number"};
+  static_assert(std::size(types) == static_cast<std::size_t>(FieldType::identity) + 1);
   constexpr const char* lifetimes[] = {"state: evolves, is saved", "reference: fixed at t = 0, is saved", "derived: computed when something reads it"};
   CatalogGroup g{"field", "fields", "Values of each particle, by the names that `output.frames.fields` and frames use.", {}};
   for (const FieldSpec* f : fields::all)
@@ -102,7 +104,7 @@ std::vector<CatalogGroup> catalog() {
   CatalogEntry body = section<Body>();
   body.keys.push_back({"copies", "makes many bodies of this one", "", "a mapping of the keys of 'copies'", "none"});
   return {{"section", "deck sections", "The keys of the deck and of the mappings in it.",
-           {section<Model>(), body, section<Copies>(), section<Motion>(), section<Output>(), section<Frames>(), section<Numerics>(), section<Relaxation>(), section<Expect>()}},
+           {section<Model>(), body, section<Copies>(), section<Motion>(), section<Waves>(), section<Output>(), section<Frames>(), section<Numerics>(), section<Relaxation>(), section<Expect>()}},
           types(Registry<MaterialSpec>::get(), "materials", "What bodies are made of: entries of `materials`."),
           types(Registry<Shape>::get(), "shapes", "Regions of space, for bodies and walls."),
           types(Registry<BoundarySpec>::get(), "boundaries", "Borders of the scene: entries of `boundaries`."),

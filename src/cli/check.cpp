@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "cli/forecast.h"
+#include "cli/preview.h"
 #include "cli/recorder.h"
 #include "cli/relaxation_report.h"
 #include "core/error.h"
@@ -85,8 +86,11 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
   Diagnostics found = model.warnings;
   Scene<Dim> scene = build_scene<Dim>(model, found, Filling::draft);
   check_scene(scene, found);
+  // Also of a scene with mistakes: there a picture helps most.
+  const std::string preview = options.preview.empty() ? "" : write_preview<Dim>(*scene.world, options.preview);
   if (found.has_errors()) throw DeckError(found);
   if (!found.items().empty()) std::cerr << found.render();
+  if (!preview.empty()) std::cerr << fmt::format("{}: {}\n", printable(options.preview), preview);
   World<Dim>& world = *scene.world;
   std::vector<std::string> names;
   for (const auto& set : world.sets()) names.push_back(set->name());

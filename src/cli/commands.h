@@ -19,6 +19,7 @@ struct RunOptions {
   RunLimits limits;
   bool verify = false;      ///< exit 4 when an `expect` is not met
   bool quiet = false;
+  bool report = true;       ///< write report.html at the end
 };
 int run_command(const RunOptions& options);
 
@@ -27,10 +28,18 @@ struct CheckOptions {
   std::vector<std::string> set;
   bool explain = false;
   bool json = false;
+  std::string preview;      ///< a PNG of the scene; empty: none
   bool calibrate = true;    ///< time a few steps for the forecast
   int threads = 0;          ///< that the run would have; 0: a sensible number for the scene
 };
 int check_command(const CheckOptions& options);
+
+struct ReportOptions {
+  std::vector<std::string> runs;  ///< their folders
+  std::string output;             ///< the page; empty: report.html in the folder of the only run
+};
+/// Writes a page about runs. Throws Error (usage) when several runs have no page named, IoError.
+int report_command(const ReportOptions& options);
 
 struct RelaxOptions {
   std::string deck;
@@ -59,6 +68,18 @@ struct StudyOptions {
 /// already are used again. Throws Error (usage), DeckError, IoError.
 int study_command(const StudyOptions& options);
 
+struct CompareOptions {
+  std::string run;
+  std::string baseline;    ///< a run folder, or a file that --update has written
+  std::string tolerances;  ///< a YAML file; empty: the defaults
+  bool update = false;     ///< write the run as the baseline
+  bool json = false;
+  bool all = false;        ///< list all that was compared
+};
+/// Compares a run with another or with a baseline; exit 4 when one difference is above its tolerance. Throws
+/// Error (usage), DeckError, IoError.
+int compare_command(const CompareOptions& options);
+
 struct BenchOptions {
   bool json = false;
   std::vector<std::string> scenes;   ///< empty: all
@@ -66,8 +87,11 @@ struct BenchOptions {
   std::string precision = "both";    ///< single | double | both
   double seconds = 2;                ///< of measuring per repeat
   int repeats = 5;
+  bool effects = false;              ///< what effects would cost that the scenes do not call for
 };
 int bench_command(const BenchOptions& options);
+/// The part --effects of it.
+int bench_effects_command(const BenchOptions& options);
 
 int schema_command();
 

@@ -7,9 +7,8 @@
 #include <chrono>
 #include <cmath>
 
-#include "boundaries/boundary.h"
+#include "cli/boundary_mesh.h"
 #include "core/parallel.h"
-#include "geometry/mesh.h"
 #include "output/vtu.h"
 #include "probes/set_sums.h"
 #include "probes/solid_scene.h"
@@ -226,6 +225,12 @@ template <int Dim>
 typename Recorder<Dim>::Totals Recorder<Dim>::totals() const {
   Totals sum;
   sum.time = world_.clock.time;
+  for (const auto& [name, book] : world_.exchanged()) {
+    sum.mass_in += book.mass;
+    sum.energy_in += book.energy;
+    const Vec3 p = to_space<Dim>(book.momentum);
+    for (std::size_t k = 0; k < 3; ++k) sum.momentum_in[k] += p[static_cast<Index>(k)];
+  }
   const ParticleSet<Dim>* water = world_.find("water");
   if (const ParticleSet<Dim>* soil = world_.find("soil")) add_soil_totals(*soil, sum);
   for (const auto& set : world_.sets())
@@ -324,36 +329,13 @@ void Recorder<Dim>::write_set(const ParticleSet<Dim>& set) {
 template <int Dim>
 void Recorder<Dim>::write_boundaries() {
   const Model& model = world_.model();
-  const bool moves = std::any_of(model.boundaries.begin(), model.boundaries.end(), [](const auto& b) {
-    return dynamic_cast<const WallBoundary&>(*b).motion.has_value();
-  });
-  const Index number = moves ? frame_ : 0;  // walls at rest are written once and listed at every time
+  const Index number = boundaries_move(model) ? frame_ : 0;  // walls at rest are written once and listed at every time
   if (number == frame_) {
-    const Placement placement{model.resolution, support_radius(model), Dim};
-    const double t = world_.clock.time;
-    std::vector<Vec3> points;
-    std::vector<Index> corners;
-    std::vector<std::int32_t> part;
-    for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
-      const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
-      const auto solid = wall.solid(placement);
-      if (!solid) continue;
-      const SurfaceMesh mesh = surface_mesh(*solid, 2 * model.resolution, Dim);
-      const auto first = static_cast<Index>(points.size());
-      for (const Vec3& p : mesh.points) points.push_back(wall.motion ? wall.motion->position(p, t) : p);
-      const auto add = [&](const auto& cells) {
-        for (const auto& cell : cells) {
-          for (const std::int32_t c : cell) corners.push_back(first + c);
-          part.push_back(static_cast<std::int32_t>(b));
-        }
-      };
-      if constexpr (Dim == 2) add(mesh.segments);
-      else add(mesh.triangles);
-    }
+    const BoundaryMesh mesh = boundary_mesh(model, world_.clock.time);
     VtuOptions options;
-    options.time = t;
-    write_vtu_mesh(folder_.frame("boundaries", number), points, Dim, corners, {},
-                   {{"part", "", 1, std::span<const std::int32_t>(part)}}, options);
+    options.time = world_.clock.time;
+    write_vtu_mesh(folder_.frame("boundaries", number), mesh.points, Dim, mesh.corners, {},
+                   {{"part", "", 1, std::span<const std::int32_t>(mesh.part)}}, options);
   }
   pvd_.at("boundaries").add(world_.clock.time, RunFolder::frame_name("boundaries", number));
 }
@@ -381,9 +363,16 @@ std::vector<LedgerRow> Recorder<Dim>::ledger() const {
   const double energy_scale = std::max({std::abs(energy_a), a.kinetic, b.kinetic});
   const auto vec = [](const std::array<double, 3>& v) { return Vec3(v[0], v[1], v[2]); };
   const auto list = [](const std::array<double, 3>& v) { return std::vector<double>(v.begin(), v.end()); };
-  std::vector<LedgerRow> rows{{"mass", "kg", {a.mass}, {b.mass}, {}, relative(b.mass - a.mass, a.mass)},
-          {"momentum", "kg m/s", list(a.momentum), list(b.momentum), {}, relative((vec(b.momentum) - vec(a.momentum)).norm(), a.mass * speed)},
-          {"energy", "J", {energy_a}, {energy_b}, {}, relative(energy_b - energy_a, energy_scale)}};
+  const double mass_in = b.mass_in - a.mass_in, energy_in = b.energy_in - a.energy_in;
+  const Vec3 momentum_in = vec(b.momentum_in) - vec(a.momentum_in);
+  std::vector<LedgerRow> rows{{"mass", "kg", {a.mass}, {b.mass}, {}, relative(b.mass - a.mass - mass_in, std::max(a.mass, b.mass))},
+          {"momentum", "kg m/s", list(a.momentum), list(b.momentum), {}, relative((vec(b.momentum) - vec(a.momentum) - momentum_in).norm(), std::max(a.mass, b.mass) * speed)},
+          {"energy", "J", {energy_a}, {energy_b}, {}, relative(energy_b - energy_a - energy_in, std::max(energy_scale, std::abs(energy_in)))}};
+  if (!world_.exchanged().empty()) {
+    rows[0].exchanged = {mass_in};
+    rows[1].exchanged = {momentum_in.x(), momentum_in.y(), momentum_in.z()};
+    rows[2].exchanged = {energy_in};
+  }
   if (a.water_volume > 0) {
     const std::string cubic = Dim == 2 ? "m2" : "m3";
     rows.push_back({"water_volume", cubic, {a.water_volume}, {b.water_volume}, {}, relative(b.water_volume - a.water_volume, a.water_volume)});

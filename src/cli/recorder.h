@@ -74,6 +74,8 @@ class Recorder {
     double max_speed = 0, min_density = 0, max_density = 0;
     double dissipated = 0, min_fraction = 0, max_fraction = 0;  ///< of soil
     double water_volume = 0, mixture_volume = 0;                ///< sum of m / rho and of V, where water meets soil
+    double mass_in = 0, energy_in = 0;                          ///< what has come in through boundaries, less what has left
+    std::array<double, 3> momentum_in{};
   };
   using TotalsArray = std::array<double, sizeof(Totals) / sizeof(double)>;
 

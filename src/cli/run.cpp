@@ -16,6 +16,7 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "output/progress.h"
+#include "report/page.h"
 #include "scene/build.h"
 #include "scene/cross_check.h"
 #include "solve/stepper.h"
@@ -87,10 +88,8 @@ class DeckRun {
     Recorder<Dim> recorder(world, plan, folder, resumed);
     checkpoint.reader.reset();  // its memory is needed for the neighbor lists
     Index particles = 0;
-    for (const auto& set : world.sets()) {
+    for (const auto& set : world.sets())
       if (set->phase() != "wall") particles += set->size();
-      summary_.particles.emplace_back(set->name(), set->size());
-    }
     set_threads(sensible_threads(particles, options_.threads));
     Keeper<Dim> keeper({world, plan, stepper, recorder}, folder, wall_before_);
 
@@ -165,6 +164,8 @@ class DeckRun {
     summary_.deck = options_.deck;
     summary_.deck_hash = deck_hash(model_);
     summary_.dimension = Dim;
+    // As they are now: what a run began with is not known to one that goes on.
+    for (const auto& set : world.sets()) summary_.particles.emplace_back(set->name(), set->size());
     summary_.threads = threads();
     summary_.advection_steps = world.clock.advection_steps;
     summary_.acoustic_steps = world.clock.acoustic_steps;
@@ -179,7 +180,8 @@ class DeckRun {
     rows.push_back({"guard", stepper.guard().calls(), stepper.guard().seconds(), 0});
     rows.push_back({"checkpoints", keeper.count(), keeper.seconds(), 0});
     for (const auto& e : parts.plan.effects()) {
-      rows.push_back({e.label, e.calls, e.seconds, 0});
+      rows.push_back({e.label, e.calls, e.seconds, 0, e.walked_set, e.in_set > 0 ? e.walked / e.in_set : 0});
+      summary_.plan.push_back({stage_name(e.info.stage), e.info.name, e.info.equations, e.effect->acts_on(), e.because});
       if (e.info.stage != Stage::observe) stepping += e.seconds;
     }
     summary_.particle_updates_per_s_per_core = stepping > 0 ? stepper.particle_updates() / stepping / threads() : 0;
@@ -201,6 +203,17 @@ class DeckRun {
     summary_.disk_bytes = folder_bytes(options_.folder);
     write_summary(folder.summary(), summary_);
     report(world, folder);
+    if (options_.report) write_page(folder);
+  }
+
+  /// The page comes last: whatever goes wrong with it, the results are there, and the page can be made again from them.
+  void write_page(const RunFolder& folder) {
+    try {
+      write_report({options_.folder}, folder.report());
+    } catch (const std::exception& e) {
+      std::cerr << "warning: there is no report.html: " << printable(e.what()) << "; 'sphgeo report " << printable(options_.folder) << "' makes it again\n";
+      if (summary_.exit_code == 0 && dynamic_cast<const IoError*>(&e)) summary_.exit_code = static_cast<int>(ExitCode::io);
+    }
   }
 
   void report(const World<Dim>& world, const RunFolder& folder) const {

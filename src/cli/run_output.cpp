@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "boundaries/boundary.h"
-#include "geometry/mesh.h"
+#include "cli/boundary_mesh.h"
 #include "output/vtu.h"
 #include "probes/probe.h"
 #include "scene/build.h"
@@ -57,24 +56,9 @@ std::pair<double, double> frame_size(const World<Dim>& world, const ParticleSet<
 }  // namespace
 
 double boundaries_bytes(const Model& model) {
-  double sum = 0;
-  const Placement placement{model.resolution, support_radius(model), model.dimension};
-  for (const auto& b : model.boundaries) {
-    const auto* wall = dynamic_cast<const WallBoundary*>(b.get());
-    const auto solid = wall ? wall->solid(placement) : nullptr;
-    if (!solid) continue;
-    const SurfaceMesh mesh = surface_mesh(*solid, 2 * model.resolution, model.dimension);
-    std::vector<Index> corners;
-    const auto add = [&](const auto& cells) {
-      for (const auto& cell : cells)
-        for (const std::int32_t c : cell) corners.push_back(c);
-    };
-    if (model.dimension == 2) add(mesh.segments);
-    else add(mesh.triangles);
-    const std::vector<std::int32_t> part(corners.size() / static_cast<std::size_t>(model.dimension));
-    sum += static_cast<double>(vtu_mesh_bytes(mesh.points, model.dimension, corners, {}, {{"part", "", 1, std::span<const std::int32_t>(part)}}));
-  }
-  return sum;
+  const BoundaryMesh mesh = boundary_mesh(model, 0);
+  if (mesh.part.empty()) return 0;
+  return static_cast<double>(vtu_mesh_bytes(mesh.points, model.dimension, mesh.corners, {}, {{"part", "", 1, std::span<const std::int32_t>(mesh.part)}}));
 }
 
 template <int Dim>
@@ -100,11 +84,7 @@ RunOutput run_output(const World<Dim>& world, const std::vector<Wish>& wishes, d
       out.buffer_bytes = std::max(out.buffer_bytes, buffers);
     }
   for (const auto& set : world.sets()) out.checkpoint_bytes += saved_bytes(*set);
-  const bool moves = std::any_of(model.boundaries.begin(), model.boundaries.end(), [](const auto& b) {
-    const auto* wall = dynamic_cast<const WallBoundary*>(b.get());
-    return wall && wall->motion.has_value();
-  });
-  out.walls_bytes = boundaries_bytes(model) * (moves ? out.frames : 1);
+  out.walls_bytes = boundaries_bytes(model) * (boundaries_move(model) ? out.frames : 1);
   return out;
 }
 

@@ -136,7 +136,7 @@ class StudyCommand {
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return study_.runs[a].spacing > study_.runs[b].spacing; });
     for (const std::size_t k : order) {
       StudyRun& run = study_.runs[k];
-      run.record = read_run_record(folder_of(k));
+      run.record = read_outcome(folder_of(k));
       if (run.record.status == "done" || run.record.status == "unstable") {
         tell(fmt::format("  {}: used again, {}\n", printable(settings_text(run.settings)), run.record.status));
         if (run.record.status == "unstable") worst_ = static_cast<int>(ExitCode::unstable);
@@ -157,7 +157,7 @@ class StudyCommand {
   void ended(std::size_t child) {
     StudyRun& run = study_.runs[queued_[child]];
     const int code = children_[child].exit_code;
-    run.record = read_run_record(folder_of(queued_[child]));
+    run.record = read_outcome(folder_of(queued_[child]));
     std::string what = fmt::format("{} in {}", run.record.status, duration_text(run.record.wall_s));
     if (code == static_cast<int>(ExitCode::stopped)) {
       ++stopped_runs_;
@@ -178,6 +178,7 @@ class StudyCommand {
 
   void write() const {
     write_json();
+    write_file_atomically(options_.folder + "/study.html", study_page(study_, study_results(study_)));
     std::cout << render_study(study_, study_results(study_));
   }
 

@@ -4,6 +4,7 @@
 #include <H5public.h>
 #include <fmt/format.h>
 #include <muParser.h>
+#include <png.h>
 #include <zlib.h>
 
 #include <Eigen/Core>
@@ -48,10 +49,10 @@ std::string version_text() {
       "compiler   {}, {}, for {}\n"
       "vectors    {} bits: {} numbers in single, {} in double precision\n"
       "threads    up to {}; OpenMP {} for vectors\n"
-      "libraries  yaml-cpp {}, muparser {}, nlohmann-json {}.{}.{}, HDF5 {}, zlib {}, fmt {}.{}.{}, CLI11 {}, Eigen {}.{}.{}\n",
+      "libraries  yaml-cpp {}, muparser {}, nlohmann-json {}.{}.{}, HDF5 {}, zlib {}, libpng {}, fmt {}.{}.{}, CLI11 {}, Eigen {}.{}.{}\n",
       SPHGEO_VERSION, SPHGEO_COMMIT, compiler(), SPHGEO_BUILD_TYPE, SPHGEO_ARCH, 8 * lane_bytes, native_width<float>,
       native_width<double>, threads(), _OPENMP, SPHGEO_YAML_CPP, muparser(), NLOHMANN_JSON_VERSION_MAJOR,
-      NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH, hdf5(), zlibVersion(), FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
+      NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH, hdf5(), zlibVersion(), png_get_libpng_ver(nullptr), FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
       FMT_VERSION % 100, CLI11_VERSION, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
 }
 

@@ -193,10 +193,13 @@ class SchemaCore {
   const std::string& sentence() const { return sentence_; }
   const std::deque<Key>& keys() const { return keys_; }
   const std::vector<std::function<void(void*, CheckContext&)>>& rules() const { return rules_; }
+  /// Keys that were taken out of the mapping before it is read, and may be meant by a misspelt one.
+  const std::vector<std::string>& taken_before() const { return taken_before_; }
 
  protected:
   std::string type_name_;
   std::string sentence_;
+  std::vector<std::string> taken_before_;
   std::deque<Key> keys_;  // a deque: references handed out stay valid
   std::vector<std::function<void(void*, CheckContext&)>> rules_;
 };

@@ -14,6 +14,7 @@ Schema<ClampedRegion> ClampedRegion::schema() {
 
 Schema<Body> Body::schema() {
   Schema<Body> s("body", "A region filled with particles of one material at t = 0; with `copies`, many of them.");
+  s.taken_before("copies");
   s.required("name", &Body::name, unit::none, "the name of its particles and files");
   s.required("material", &Body::material, unit::none, "the name of an entry of 'materials'");
   s.required("shape", &Body::shape, unit::none, "the region it fills");
@@ -96,6 +97,16 @@ Schema<Numerics> Numerics::schema() {
              "advection step as a fraction of h / |v|max")
       .above(0)
       .at_most(1);
+  s.optional("time_step_factor", &Numerics::time_step_factor, unit::none,
+             "factor on all time steps, of every phase: what a result owes to the steps shows at 0.5")
+      .above(0)
+      .at_most(1);
+  s.optional("lattice_jitter", &Numerics::lattice_jitter, unit::none,
+             "largest random move of each coordinate of a particle from its lattice point at t = 0, in spacings; bodies of water that "
+             "the pores of soil touch are relaxed and not moved")
+      .at_least(0)
+      .at_most(0.4);
+  s.optional("lattice_seed", &Numerics::lattice_seed, unit::none, "another seed, another jitter").at_least(0);
   s.optional("advection_ratio_max", &Numerics::advection_ratio_max, unit::none,
              "largest advection step, in acoustic steps of a fluid at rest")
       .at_least(1);

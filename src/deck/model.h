@@ -52,6 +52,9 @@ struct Numerics {
   std::string pair_geometry = "frozen";   ///< frozen | current positions within an advection step
   double cfl_acoustic = 0.4;
   double cfl_advection = 0.2;
+  double time_step_factor = 1;     ///< on all time steps
+  double lattice_jitter = 0;       ///< of particles at t = 0, in spacings
+  Index lattice_seed = 1;
   double advection_ratio_max = 5.5;
   double limiter = 3.0;                                ///< Eq. 63, water
   double transport_coefficient = 0.2;                  ///< alpha of Eq. 87
@@ -158,6 +161,7 @@ struct Model {
   Numerics numerics;
   Relaxation relaxation;
   std::vector<Expect> expect;
+  std::vector<std::string> without;  ///< effects that are switched off
 
   Places places;         ///< where each key path stands
   Diagnostics warnings;  ///< of the reading

@@ -125,6 +125,7 @@ Schema<Model> Model::schema() {
       .items(0, 10000);
   s.optional("output", &Model::output, unit::none, "frames and tables").changeable_on_resume();
   s.optional("numerics", &Model::numerics, unit::none, "choices of the numerical method");
+  s.optional("without", &Model::without, unit::none, "effects that are switched off, to see what they do; 'sphgeo show EFFECT' tells which can be");
   s.optional("relaxation", &Model::relaxation, unit::none,
              "how water is distributed that starts in the pores of soil");
   s.optional("expect", &Model::expect, unit::none, "results the deck claims")

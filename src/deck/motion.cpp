@@ -38,6 +38,7 @@ Schema<Motion> Motion::schema() {
   s.optional("axis", &Motion::axis, unit::none, "axis of the rotation; y turns the x-z plane").keep_y();
   s.optional("center", &Motion::center, unit::length, "a point on the axis of the rotation");
   s.optional("table", &Motion::table, unit::none, "CSV file with a column t and any of x, y, z, angle (SI), added to the formulas");
+  s.optional("waves", &Motion::waves, unit::none, "a piston that makes waves, from its start on; added to the formulas");
   s.optional("from", &Motion::from, unit::time, "it rests before this time");
   s.optional("until", &Motion::until, unit::time, "it rests after this time");
   s.check([](Motion& m, CheckContext& c) {
@@ -71,6 +72,7 @@ Motion::Pose Motion::pose(double t) const {
   for (int k = 0; k < 3; ++k)
     if (!columns_[static_cast<std::size_t>(k)].empty())
       p.shift[k] += interpolate(times_, columns_[static_cast<std::size_t>(k)], at);
+  if (waves) p.shift += waves->displacement(at - from);
   if (!columns_[3].empty()) p.angle += interpolate(times_, columns_[3], at);
   return p;
 }

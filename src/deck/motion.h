@@ -7,6 +7,7 @@
 
 #include "deck/expression.h"
 #include "deck/schema.h"
+#include "deck/waves.h"
 
 namespace sphgeo {
 
@@ -17,6 +18,7 @@ struct Motion {
   Vec3 axis = Vec3(0, 1, 0);                ///< axis of the rotation; y turns the x-z plane
   Vec3 center = Vec3::Zero();               ///< a point on the axis, m
   std::optional<FilePath> table;            ///< CSV with columns t and any of x, y, z, angle; added to the formulas
+  std::optional<Waves> waves;               ///< of a wave maker; added to the formulas
   double from = 0.0;                        ///< it rests before, s
   std::optional<double> until;              ///< and after, s
 

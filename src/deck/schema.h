@@ -68,6 +68,7 @@ const ValueType& value_type<Variables>();
 template <class P>
 class Schema : public SchemaCore {
  public:
+  using SchemaCore::taken_before;
   Schema(std::string type_name, std::string sentence)
       : SchemaCore(std::move(type_name), std::move(sentence)) {}
 
@@ -86,6 +87,9 @@ class Schema : public SchemaCore {
     });
     return *this;
   }
+
+  /// Names a key that is taken out of the mapping before this section is read.
+  void taken_before(std::string name) { taken_before_.push_back(std::move(name)); }
 
  private:
   template <class T, class B>

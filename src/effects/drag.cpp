@@ -21,7 +21,8 @@ template <int Dim>
 class Drag final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"drag", Stage::force, "Eqs. 29-31, 46, 57, 59", "drag between water and soil, both ways, implicit in the relative velocity", false};
+    return {"drag", Stage::force, "Eqs. 29-31, 46, 57, 59", "drag between water and soil, both ways, implicit in the relative velocity", false,
+            "water and soil pass through each other without resistance"};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!has_pore_water(world)) return {"there is no water, or there is no soil"};

@@ -6,6 +6,7 @@ namespace sphgeo {
 
 const char* stage_name(Stage stage) {
   switch (stage) {
+    case Stage::exchange: return "exchange";
     case Stage::reinitialize: return "reinitialize";
     case Stage::predict: return "predict";
     case Stage::force: return "force";

@@ -14,6 +14,7 @@ namespace sphgeo {
 
 /// The places of Algorithm 2 where effects run, in order.
 enum class Stage {
+  exchange,      ///< once per advection step, before particles are sorted: some enter, some leave
   reinitialize,  ///< once per advection step, after the neighbor lists are new (lines 11, 12)
   predict,       ///< to the middle of the acoustic step (Eq. 96)
   force,         ///< accelerations at the middle (Eqs. 59, 60)
@@ -26,7 +27,7 @@ enum class Stage {
   solid_finish,  ///< once per acoustic step: what water and soil see of the solids (Eq. 95)
   observe        ///< only when a probe or a frame is due
 };
-inline constexpr Stage all_stages[] = {Stage::reinitialize, Stage::predict, Stage::force, Stage::kick,
+inline constexpr Stage all_stages[] = {Stage::exchange, Stage::reinitialize, Stage::predict, Stage::force, Stage::kick,
                                        Stage::rate, Stage::correct, Stage::solid_predict, Stage::solid_force,
                                        Stage::solid_kick, Stage::solid_finish, Stage::observe};
 const char* stage_name(Stage stage);
@@ -59,6 +60,8 @@ struct EffectInfo {
   std::string sentence;
   /// A supporting effect runs only when something active reads a field that it writes.
   bool supporting = false;
+  /// What a scene is without it, as "soil does not feel ..."; empty for an effect that no deck can switch off.
+  std::string when_off = {};
 };
 
 /// Upper bounds of the three clocks, s, and the fastest particle that they rest on.

@@ -39,7 +39,8 @@ class SpreadLattice {
   }
   LatticeSums operator()(double share) const {
     const double s = std::clamp((share - least) / (1 - least), 0.0, 1.0) * parts;
-    const int k = std::min(static_cast<int>(s), parts - 1);
+    // A share that is no number gives sums that are none, for the guard to find.
+    const int k = s >= 0 ? std::min(static_cast<int>(s), parts - 1) : 0;
     return {at_[k].number + (s - k) * (at_[k + 1].number - at_[k].number), at_[k].moment + (s - k) * (at_[k + 1].moment - at_[k].moment)};
   }
 

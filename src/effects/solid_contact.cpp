@@ -31,7 +31,8 @@ template <int Dim>
 class SolidContact final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"solid_contact", Stage::solid_force, "Eqs. 78, 79", "contact of solids with each other and with walls", false};
+    return {"solid_contact", Stage::solid_force, "Eqs. 78, 79", "contact of solids with each other and with walls", false,
+            "solids pass through each other, through themselves and through walls"};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("skin")) return {"no solid can meet anything"};

@@ -8,8 +8,8 @@ namespace {
 
 /// The boundary of a wall particle's part, when it moves.
 const Motion* motion_of(const Model& model, std::int32_t part) {
-  const auto& boundary = dynamic_cast<const WallBoundary&>(*model.boundaries[static_cast<std::size_t>(part)]);
-  return boundary.motion ? &*boundary.motion : nullptr;
+  const auto* wall = dynamic_cast<const WallBoundary*>(model.boundaries[static_cast<std::size_t>(part)].get());
+  return wall && wall->motion ? &*wall->motion : nullptr;
 }
 
 /// Walls whose motion the deck prescribes: place at the end of the step, velocity and acceleration

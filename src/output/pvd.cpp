@@ -34,7 +34,7 @@ std::string attribute(std::string_view line, std::string_view name, const std::s
 
 }  // namespace
 
-PvdFile PvdFile::resume(const std::string& path, double last_time) {
+PvdFile PvdFile::read(const std::string& path) {
   PvdFile pvd(path);
   const std::string text = read_file(path);
   for (std::size_t at = text.find("<DataSet"); at != std::string::npos;
@@ -50,6 +50,11 @@ PvdFile PvdFile::resume(const std::string& path, double last_time) {
       throw IoError(path, fmt::format("the time '{}' is not a number", shortened(stamp, 60)));
     pvd.frames_.push_back({time, attribute(line, "file", path)});
   }
+  return pvd;
+}
+
+PvdFile PvdFile::resume(const std::string& path, double last_time) {
+  PvdFile pvd = read(path);
   pvd.truncate_after(last_time);
   return pvd;
 }

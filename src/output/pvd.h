@@ -17,6 +17,9 @@ class PvdFile {
   /// (s). Throws IoError when the file cannot be read or is none of ours.
   static PvdFile resume(const std::string& path, double last_time);
 
+  /// The collection that a file of sphgeo holds. Throws as resume().
+  static PvdFile read(const std::string& path);
+
   /// Adds a frame (its path relative to the .pvd file) and replaces the file. Throws IoError.
   /// Frames at that time or later are replaced; a file may be named at several times.
   void add(double time, const std::string& frame);

@@ -65,11 +65,16 @@ Json to_json(const Summary& s) {
   out["particle_updates_per_s_per_core"] = number(s.particle_updates_per_s_per_core);
   out["memory_peak_bytes"] = s.memory_peak_bytes;
   out["effects"] = Json::array();
-  for (const TimeRow& r : s.effects)
+  for (const TimeRow& r : s.effects) {
     out["effects"].push_back({{"name", r.name},
                               {"calls", r.calls},
                               {"seconds", number(r.seconds)},
                               {"share", number(r.share)}});
+    if (!r.walked_set.empty()) out["effects"].back()["walks"] = {{"set", r.walked_set}, {"share", number(r.walked_share)}};
+  }
+  out["plan"] = Json::array();
+  for (const PlanRow& r : s.plan)
+    out["plan"].push_back({{"stage", r.stage}, {"name", r.name}, {"equations", r.equations}, {"acts_on", r.acts_on}, {"because", r.because}});
   out["expect"] = Json::array();
   for (const ExpectResult& e : s.expect) {
     Json row = {{"name", e.name},

@@ -42,6 +42,11 @@ struct CheckpointReport {
   std::uint64_t bytes = 0;  ///< the last one
 };
 
+/// One step of the plan: an effect, and why it ran.
+struct PlanRow {
+  std::string stage, name, equations, acts_on, because;
+};
+
 /// All that summary.json holds.
 struct Summary {
   std::string status;  ///< done, unstable, stopped, failed
@@ -60,6 +65,7 @@ struct Summary {
   std::uint64_t disk_bytes = 0;                ///< of the run folder
   std::optional<Forecast> forecast;            ///< made at the start
   std::vector<TimeRow> effects;  ///< from with_rest()
+  std::vector<PlanRow> plan;     ///< in the order in which they ran
   std::vector<ExpectResult> expect;
   std::vector<LedgerRow> ledger;
   GuardReport guard;

@@ -24,11 +24,14 @@ std::string render_time_table(const std::vector<TimeRow>& rows) {
   for (const TimeRow& r : rows) width = std::max(width, r.name.size());
   std::string out = fmt::format("  {:<{}}  {:>10}  {:>10}  {:>7}\n", "effect", width, "calls",
                                 "seconds", "share");
-  TimeRow total{"total", 0, 0, 0};
+  TimeRow total{"total"};
   for (const TimeRow& r : rows) {
     const std::string calls = r.name == "rest" ? "" : std::to_string(r.calls);
-    out += fmt::format("  {:<{}}  {:>10}  {:>10.3f}  {:>5.1f} %\n", r.name, width, calls, r.seconds,
+    out += fmt::format("  {:<{}}  {:>10}  {:>10.3f}  {:>5.1f} %", r.name, width, calls, r.seconds,
                        100 * r.share);
+    // What an effect leaves out is part of what it costs.
+    if (!r.walked_set.empty()) out += fmt::format("  {:.3g} % of {}", 100 * r.walked_share, r.walked_set);
+    out += '\n';
     total.seconds += r.seconds;
     total.share += r.share;
   }

@@ -47,16 +47,28 @@ Plan<Dim>::Plan(World<Dim>& world, const std::vector<Wish>& wishes) : world_(wor
   check_producers(wishes);
   order();
   for (auto& e : effects_) e.effect->prepare(world_);
+  for (auto& e : effects_) {
+    const auto& lists = e.needs.lists;
+    const bool within = std::any_of(lists.begin(), lists.end(), [](const ListUse& l) { return l.target == l.source; });
+    if (lists.empty() || within) continue;  // such effects walk everybody
+    e.walked_set = lists.front().target;
+    e.walked_list = &world_.list(lists.front().target, lists.front().source);
+  }
 }
 
 template <int Dim>
 void Plan<Dim>::bind(const std::vector<Wish>& wishes) {
   std::vector<PlannedEffect<Dim>> supporting;
   for (const auto& entry : EffectRegistry::all()) {
+    const auto& off = world_.model().without;
+    if (std::find(off.begin(), off.end(), entry.info.name) != off.end()) {
+      unused_.push_back({entry.info.name, "switched off by the deck: " + entry.info.when_off});
+      continue;
+    }
     Binding<Dim> binding = entry.template bind<Dim>(world_);
     if (binding.effects.empty()) unused_.push_back({entry.info.name, binding.because});
     for (auto& effect : binding.effects) {
-      PlannedEffect<Dim> planned{entry.info, std::move(effect), {}, binding.because, entry.info.name, 0, 0};
+      PlannedEffect<Dim> planned{entry.info, std::move(effect), {}, binding.because, entry.info.name};
       if (binding.effects.size() > 1) planned.label += " (" + planned.effect->acts_on() + ")";
       planned.needs = planned.effect->needs();
       (entry.info.supporting ? supporting : effects_).push_back(std::move(planned));
@@ -164,6 +176,9 @@ void Plan<Dim>::run(Stage stage) {
     e.effect->apply(world_);
     e.seconds += std::chrono::duration<double>(clock::now() - start).count();
     ++e.calls;
+    if (e.walked_list == nullptr) continue;
+    e.walked += static_cast<double>(e.walked_list->active());
+    e.in_set += static_cast<double>(e.walked_list->target_count());
   }
 }
 
@@ -173,6 +188,10 @@ StepLimits Plan<Dim>::limits() const {
   for (const auto& e : effects_) e.effect->limit(world_, limits);
   // Where solids are alone, the acoustic step is theirs.
   if (limits.acoustic == std::numeric_limits<double>::infinity()) limits.acoustic = limits.solid;
+  const double factor = world_.model().numerics.time_step_factor;
+  limits.advection *= factor;
+  limits.acoustic *= factor;
+  limits.solid *= factor;
   return limits;
 }
 
@@ -188,6 +207,9 @@ void Plan<Dim>::save(StateSink& sink) const {
   for (const auto& e : effects_) {
     sink.put_count("effects/" + e.label + "/calls", e.calls);
     sink.put_number("effects/" + e.label + "/seconds", e.seconds);
+    if (e.walked_list == nullptr) continue;
+    sink.put_number("effects/" + e.label + "/walked", e.walked);
+    sink.put_number("effects/" + e.label + "/in_set", e.in_set);
   }
 }
 
@@ -198,6 +220,9 @@ void Plan<Dim>::load(const StateSource& source) {
     if (!source.has("effects/" + e.label + "/calls")) continue;
     e.calls = source.count("effects/" + e.label + "/calls");
     e.seconds = source.number("effects/" + e.label + "/seconds");
+    if (!source.has("effects/" + e.label + "/walked")) continue;
+    e.walked = source.number("effects/" + e.label + "/walked");
+    e.in_set = source.number("effects/" + e.label + "/in_set");
   }
 }
 

@@ -27,6 +27,11 @@ struct PlannedEffect {
   std::string label;  ///< the name, with what it acts on where several bear it: for time tables and checkpoints
   long calls = 0;
   double seconds = 0;
+  /// Where all its pairs are between two sets: the first of its lists, and the particles that it has met in all calls.
+  /// Only these are walked; the others of the set are far from the source.
+  std::string walked_set = {};
+  const NeighborList* walked_list = nullptr;
+  double walked = 0, in_set = 0;
 };
 
 struct UnusedEffect {

@@ -11,6 +11,12 @@
 
 namespace sphgeo {
 
+/// What has crossed a boundary so far.
+struct Crossings {
+  double entered = 0, left = 0;  ///< particles
+  double mass = 0;               ///< that came in, less what went out, kg; per metre of depth in 2D
+};
+
 /// Read-only view of all particle sets at one moment; vectors have y = 0 in 2D.
 class SceneView {
  public:
@@ -30,6 +36,8 @@ class SceneView {
   virtual std::function<std::int32_t(Index)> tag(const std::string& set, const FieldSpec& field) const = 0;
   /// Calls f(i, W) for all particles of the set whose kernel reaches the point; W in 1/m^d.
   virtual void near(const std::string& set, const Vec3& at, const std::function<void(Index, double)>& f) const = 0;
+  /// All zero for a boundary that nothing crosses.
+  virtual Crossings crossings(const std::string& boundary) const = 0;
   /// The box of the scene, m.
   virtual Aabb domain() const = 0;
 

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "deck/registry.h"
 #include "deck/schema.h"
 #include "probes/probe.h"
@@ -28,6 +31,7 @@ struct SurfaceProfileProbe final : Probe {
       const Vec3 at = place(k);
       columns.push_back({fmt::format("height_{}", k), "m", fmt::format("z of the surface at x = {:.6g} m, y = {:.6g} m; empty where there is none", at.x(), at.y())});
     }
+    columns.push_back({"slope_angle", "deg", "slope of the line that fits the heights best, rising from start to end"});
     return columns;
   }
   std::vector<FieldRequest> needs(const Model&) const override { return {{set, &fields::volume}}; }
@@ -37,6 +41,20 @@ struct SurfaceProfileProbe final : Probe {
     for (int k = 0; k < points; ++k) places.push_back(place(k));
     const auto heights = surface_heights(scene, set, places);
     std::copy(heights.begin(), heights.end(), out.begin());
+    double n = 0, sx = 0, sz = 0, sxx = 0, sxz = 0;
+    for (int k = 0; k < points; ++k) {
+      const auto& z = heights[static_cast<std::size_t>(k)];
+      if (!z) continue;
+      const Vec3 way = place(k) - from;
+      const double x = std::hypot(way.x(), way.y());
+      n += 1;
+      sx += x;
+      sz += *z;
+      sxx += x * x;
+      sxz += x * *z;
+    }
+    const double spread = n * sxx - sx * sx;
+    if (n >= 2 && spread > 0) out.back() = std::atan((n * sxz - sx * sz) / spread) * 180 / std::numbers::pi;
   }
 
  private:

@@ -105,12 +105,12 @@ std::string AxisScale::text(double tick) const {
 }
 
 std::string AxisScale::title() const {
-  const std::string unit = axis_.unit == "1" ? "" : axis_.unit;
+  const std::string unit = unit_text(axis_.unit);
   std::string factor = power_ == 0 ? "" : "10" + raised(power_);
   if (!factor.empty() && !unit.empty()) factor += "\u00a0";
   const std::string bracket = factor + unit;
-  if (bracket.empty()) return axis_.title;
-  return axis_.title + (axis_.title.empty() ? "" : " ") + "(" + bracket + ")";
+  if (bracket.empty() || axis_.title.empty()) return axis_.title + bracket;
+  return axis_.title + " (" + bracket + ")";
 }
 
 }  // namespace sphgeo

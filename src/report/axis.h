@@ -34,7 +34,7 @@ class AxisScale {
   const std::vector<double>& ticks() const { return ticks_; }
   /// The text at a mark; of a linear axis without the power of ten that its title names.
   std::string text(double tick) const;
-  /// "pressure (10³ Pa)".
+  /// "pressure (10³ Pa)"; without a title "10³ Pa".
   std::string title() const;
 
  private:

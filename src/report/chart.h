@@ -18,8 +18,8 @@ struct ChartCurve {
   bool dashed = false;
   bool emphasised = false;  ///< a heavy line, large filled markers
   bool neutral = false;     ///< in the colour of the text: references, fronts
-  std::optional<int> color; ///< number in the palette; empty: the next one
-  std::vector<std::string> labels;  ///< beside the points; none, or one a point ("" = none)
+  std::optional<int> color = {}; ///< number in the palette; empty: the next one
+  std::vector<std::string> labels = {};  ///< beside the points; none, or one a point ("" = none)
 };
 
 struct Chart {

@@ -57,6 +57,16 @@ std::string raised(int exponent) {
   return out;
 }
 
+std::string unit_text(std::string_view unit) {
+  std::string out;
+  if (unit == "1") return out;
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    const bool power = i > 0 && unit[i] >= '0' && unit[i] <= '9' && ((unit[i - 1] >= 'a' && unit[i - 1] <= 'z') || (unit[i - 1] >= 'A' && unit[i - 1] <= 'Z'));
+    out += power ? raised(unit[i] - '0') : std::string(1, unit[i]);
+  }
+  return out;
+}
+
 std::string number_text(double value, int digits) {
   if (!std::isfinite(value)) return "–";
   if (value == 0) return "0";

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "boundaries/exchange.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/parallel.h"
 #include "geometry/fill.h"
 #include "geometry/relax_fill.h"
@@ -30,6 +32,8 @@ double soil_smoothing_length(const Model& model) {
 namespace {
 
 bool has_water(const Model& model) {
+  for (const auto& b : model.boundaries)
+    if (const auto* border = dynamic_cast<const ExchangeBoundary*>(b.get()); border && !border->source_box().empty()) return true;
   return std::any_of(model.bodies.begin(), model.bodies.end(), [&](const Body& b) {
     const MaterialSpec* m = model.material(b.material);
     return m && m->phase() == "water";
@@ -48,11 +52,25 @@ double support_radius(const Model& model) {
 
 BodyPoints fill_body(const Body& body, const Model& model) {
   const double dp = body.spacing.value_or(model.resolution);
+  const Numerics& n = model.numerics;
+  BodyPoints points;
   if (body.filling == "relaxed") {
     RelaxFillResult relaxed = relax_fill(*body.shape, dp, model.dimension);
-    return {std::move(relaxed.positions), relaxed.particle_volume};
+    points = {std::move(relaxed.positions), relaxed.particle_volume};
+  } else {
+    points = {fill_lattice(*body.shape, dp, model.dimension), std::pow(dp, model.dimension)};
   }
-  return {fill_lattice(*body.shape, dp, model.dimension), std::pow(dp, model.dimension)};
+  if (n.lattice_jitter > 0) {
+    // Bodies of one shape must not be jittered alike.
+    const std::uint64_t seed = random_bits(static_cast<std::uint64_t>(n.lattice_seed), fnv1a(body.name));
+    parallel_for(static_cast<Index>(points.at.size()), [&](Index k) {
+      for (int axis = 0; axis < 3; ++axis)
+        if (axis != 1 || model.dimension == 3)
+          points.at[static_cast<std::size_t>(k)][axis] +=
+              (2 * random_uniform(seed, static_cast<std::uint64_t>(3 * k + axis)) - 1) * n.lattice_jitter * dp;
+    });
+  }
+  return points;
 }
 
 namespace {
@@ -134,12 +152,13 @@ void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
 
 template <int Dim>
 void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics& found) {
-  if (model.boundaries.empty()) return;
-  bool moves = false;
+  bool any = false, moves = false;
   for (const auto& b : model.boundaries) {
-    const auto& wall = dynamic_cast<const WallBoundary&>(*b);
-    moves = moves || wall.motion.has_value();
+    const auto* wall = dynamic_cast<const WallBoundary*>(b.get());
+    any = any || wall;
+    moves = moves || (wall && wall->motion.has_value());
   }
+  if (!any) return;
   const double dp = model.resolution;
   // Pairs use the larger smoothing length of both sets. Of one phase alone, that of the walls is no larger than its own.
   // With water and soil they are that of the larger one: the share of a kernel that lies in walls is asked for at both.
@@ -154,10 +173,12 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
   const Placement placement{dp, support_radius(model), Dim};
   std::vector<WallPart> parts;
   for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
-    const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
-    parts.push_back({{}, wall.solid(placement), !wall.motion});
+    const auto* wall = dynamic_cast<const WallBoundary*>(model.boundaries[b].get());
+    parts.push_back({});
+    if (wall == nullptr) continue;
+    parts.back() = {{}, wall->solid(placement), !wall->motion};
     try {
-      parts.back().points = wall.points(placement);
+      parts.back().points = wall->points(placement);
     } catch (const Error& e) {
       const std::string path = fmt::format("boundaries[{}]", b);
       found.error("E116", model.place_of(path), path, e.what());
@@ -167,7 +188,9 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
   join_walls<Dim>(parts, dp, support_radius(model), has_soil(model) && g > 0 ? Vec3(-model.gravity / g) : Vec3::Zero());
   if (has_soil(model)) mark_corners<Dim>(parts, dp, support_radius(model));
   for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
-    const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
+    const auto* found_wall = dynamic_cast<const WallBoundary*>(model.boundaries[b].get());
+    if (found_wall == nullptr) continue;
+    const WallBoundary& wall = *found_wall;
     const std::vector<WallPoint>& points = parts[b].points;
     const Index first = set.size();
     set.resize(first + static_cast<Index>(points.size()));
@@ -202,6 +225,8 @@ Aabb particles_box(const World<Dim>& world) {
 template <int Dim>
 void set_domain(World<Dim>& world, const Model& model) {
   Aabb box = particles_box(world);
+  for (const auto& b : model.boundaries)
+    if (const auto* border = dynamic_cast<const ExchangeBoundary*>(b.get())) box.extend(border->source_box());
   if (box.empty()) box = {Vec3::Zero(), Vec3::Zero()};
   // What leaves this box is lost: as much room on every side as the scene is large.
   const double room = std::max((box.hi - box.lo).maxCoeff(), 10 * model.resolution);

@@ -7,6 +7,7 @@
 
 #include "core/parallel.h"
 #include "core/text.h"
+#include "effects/effect.h"
 #include "materials/soil.h"
 #include "probes/probe.h"
 #include "scene/leak.h"
@@ -63,18 +64,36 @@ void check_in_walls(World<Dim>& world, const ParticleSet<Dim>& set, Diagnostics&
   struct Clash {
     Index count = 0, body = -1, wall = -1;
     Vec3 at = Vec3::Zero();
-  } clash;
-  for (Index i = 0; i < set.size(); ++i) {
-    if (set.has(fields::clamp) && set.tag(fields::clamp)[i] >= 0) continue;
-    bool close = false;
-    grid.for_each_in_reach(x[i], 0.45 * set.spacing(), [&](Index j, double) {
-      if (clash.count == 0 && !close) clash.wall = walls->tag(fields::part)[j];
-      close = true;
-    });
-    if (close && clash.count++ == 0) {
-      clash.body = set.tag(fields::part)[i];
-      clash.at = to_space<Dim>(x[i]);
+  };
+  // Those nearer than this many spacings.
+  const auto nearer_than = [&](double spacings) {
+    Clash clash;
+    for (Index i = 0; i < set.size(); ++i) {
+      if (set.has(fields::clamp) && set.tag(fields::clamp)[i] >= 0) continue;
+      bool close = false;
+      grid.for_each_in_reach(x[i], spacings * set.spacing(), [&](Index j, double) {
+        if (clash.count == 0 && !close) clash.wall = walls->tag(fields::part)[j];
+        close = true;
+      });
+      if (close && clash.count++ == 0) {
+        clash.body = set.tag(fields::part)[i];
+        clash.at = to_space<Dim>(x[i]);
+      }
     }
+    return clash;
+  };
+  const Clash clash = nearer_than(0.45);
+  if (clash.count == 0 && set.phase() == "soil") {
+    // Soil is pushed off a wall from 0.85 spacings on (see SoilWallPair), with its bulk modulus.
+    const Clash pushed = nearer_than(0.7);
+    if (pushed.count == 0) return;
+    const std::string path = fmt::format("bodies[{}].shape", pushed.body);
+    found.warning("W134", model.place_of(path), path,
+                  fmt::format("soil starts with a push: {} of its particles lie nearer than 0.7 spacings to a particle of a wall, one of body '{}' at {}, beside boundary '{}'",
+                              pushed.count, model.bodies[static_cast<std::size_t>(pushed.body)].name, point_text(pushed.at),
+                              model.boundaries[static_cast<std::size_t>(pushed.wall)]->name),
+                  "a wall along the lattice, or a start half a spacing away from it, starts at rest");
+    return;
   }
   if (clash.count == 0) return;
   const std::string path = fmt::format("bodies[{}].shape", clash.body);
@@ -154,6 +173,27 @@ void check_coupling(const World<Dim>& world, Diagnostics& found) {
   }
 }
 
+// What a deck switches off must be an effect that can be, and the reader is told what that means.
+void check_switched_off(const Model& model, Diagnostics& found) {
+  std::vector<std::string> can, all;
+  for (const auto& entry : EffectRegistry::all()) {
+    all.push_back(entry.info.name);
+    if (!entry.info.when_off.empty()) can.push_back(entry.info.name);
+  }
+  for (std::size_t k = 0; k < model.without.size(); ++k) {
+    const std::string& name = model.without[k];
+    const std::string path = fmt::format("without[{}]", k);
+    if (std::find(can.begin(), can.end(), name) != can.end()) {
+      for (const auto& entry : EffectRegistry::all())
+        if (entry.info.name == name) found.warning("W136", model.place_of(path), path, fmt::format("effect '{}' is switched off: {}", name, entry.info.when_off), "");
+    } else if (std::find(all.begin(), all.end(), name) != all.end()) {
+      found.error("E135", model.place_of(path), path, fmt::format("effect '{}' cannot be switched off", name), "these can: " + in_words(can));
+    } else {
+      found.error("E135", model.place_of(path), path, fmt::format("there is no effect '{}'", name), suggestion(name, can, "effects that can be switched off"));
+    }
+  }
+}
+
 void check_shapes(const Model& model, Diagnostics& found) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     CheckContext context(found, model.places, fmt::format("bodies[{}].shape", b), model.dimension, model.resolution);
@@ -167,6 +207,7 @@ template <int Dim>
 void check_scene(const Scene<Dim>& scene, Diagnostics& found) {
   World<Dim>& world = *scene.world;
   check_shapes(world.model(), found);
+  check_switched_off(world.model(), found);
   for (const auto& set : world.sets()) {
     if (set->phase() == "wall") continue;
     check_bodies_overlap(world, *set, found);

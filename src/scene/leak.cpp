@@ -46,7 +46,9 @@ Parts parts_of(const Scene<Dim>& scene, const Model& model, int up, bool up_is_h
   }
   const Placement placement{model.resolution, support_radius(model), Dim};
   for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
-    const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
+    const auto* found = dynamic_cast<const WallBoundary*>(model.boundaries[b].get());
+    if (found == nullptr) continue;
+    const WallBoundary& wall = *found;
     for (const OpenFace& face : wall.open_faces(placement)) {
       if (face.axis == up && face.high == up_is_high) continue;  // liquid may come in there, and never leaves
       for (const Vec3& p : face.points)

@@ -30,7 +30,9 @@ std::vector<Solid> solids_of(const Model& model) {
   std::vector<Solid> solids;
   const Placement placement{model.resolution, support_radius(model), Dim};
   for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
-    const auto& wall = dynamic_cast<const WallBoundary&>(*model.boundaries[b]);
+    const auto* found = dynamic_cast<const WallBoundary*>(model.boundaries[b].get());
+    if (found == nullptr) continue;
+    const WallBoundary& wall = *found;
     Solid s{fmt::format("boundaries[{}]", b), &wall, wall.solid(placement), true};
     if (wall.motion)
       for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)})

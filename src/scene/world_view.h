@@ -44,6 +44,10 @@ class WorldView final : public SceneView {
       if (w > 0) f(i, w);
     });
   }
+  Crossings crossings(const std::string& boundary) const override {
+    const auto at = world_.exchanged().find(boundary);
+    return at == world_.exchanged().end() ? Crossings{} : Crossings{at->second.entered, at->second.left, at->second.mass};
+  }
   Aabb domain() const override { return {to_space<Dim>(world_.domain_lo()), to_space<Dim>(world_.domain_hi())}; }
 
  private:

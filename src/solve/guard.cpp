@@ -68,10 +68,19 @@ template <int Dim>
 void Guard<Dim>::before_step(const StepLimits& limits, double dt) {
   check_speed(limits);
   largest_dt_ = std::max(largest_dt_, dt);
-  if (dt > collapsed * largest_dt_ && world_.clock.time + dt > world_.clock.time) return;
-  throw UnstableError(fmt::format("the acoustic step collapsed to {:.3g} s at t = {:.6g} s, from {:.3g} s before; the fastest particle "
+  if (!(dt > collapsed * largest_dt_) || !(world_.clock.time + dt > world_.clock.time)) stop_collapsed("acoustic", dt, largest_dt_, limits);
+  // As many solid steps as it takes go into an acoustic one: without this, a force without bound would never let go of it.
+  if (limits.solid == std::numeric_limits<double>::infinity()) return;
+  if (std::isfinite(limits.solid)) largest_solid_ = std::max(largest_solid_, limits.solid);
+  if (!(limits.solid > collapsed * largest_solid_)) stop_collapsed("solid", limits.solid, largest_solid_, limits);
+}
+
+template <int Dim>
+void Guard<Dim>::stop_collapsed(const char* which, double dt, double before, const StepLimits& limits) {
+  check_fields(true);  // names the field that went wrong, if one did
+  throw UnstableError(fmt::format("the {} step collapsed to {:.3g} s at t = {:.6g} s, from {:.3g} s before; the fastest particle "
                                   "of set '{}' moves at {:.3g} times the speed of sound",
-                                  dt, world_.clock.time, largest_dt_, limits.fastest, limits.mach),
+                                  which, dt, world_.clock.time, before, limits.fastest, limits.mach),
                       {"step", "", limits.fastest, {}, {}, world_.clock.time});
 }
 
@@ -160,7 +169,8 @@ void Guard<Dim>::check_lost() {
   for (const auto& [name, lost] : world_.lost()) {
     const auto inside = in_walls_.find(name);
     const Index stuck = inside == in_walls_.end() ? 0 : inside->second;
-    const Index all = initial_.at(name);
+    // With inlets there are more than at the start.
+    const Index all = std::max(initial_.at(name), world_.set(name).size() + lost);
     if (static_cast<double>(lost + stuck) <= budget * static_cast<double>(all)) continue;
     throw UnstableError(
         fmt::format("of {} particles of set '{}', {} have left the domain and {} sit inside a wall at t = {:.6g} s, more than the budget of {:.3g} % "
@@ -171,7 +181,7 @@ void Guard<Dim>::check_lost() {
 }
 
 // A particle is inside a wall when it lies behind the particles of the wall's first layer: more than half a
-// spacing below the surface.
+// spacing below the surface. What is clamped may be there: it does not move.
 template <int Dim>
 void Guard<Dim>::count_penetrations() {
   const ParticleSet<Dim>* walls = world_.find("walls");
@@ -182,6 +192,8 @@ void Guard<Dim>::count_penetrations() {
     if (key.second != "walls" || key.first == "walls") continue;
     const ParticleSet<Dim>& set = world_.set(key.first);
     const auto& x = set.vector(fields::position);
+    const bool skin = key.first == "skin";
+    if (skin) skin_.update(world_);
     const double near = walls->spacing() * walls->spacing();
     const auto blocks = list.blocks();
     std::vector<Index> inside(blocks.size(), 0);
@@ -189,6 +201,7 @@ void Guard<Dim>::count_penetrations() {
       const auto& block = blocks[static_cast<std::size_t>(b)];
       for (std::size_t k = 0; k < block.size(); ++k) {
         const Index i = block.targets[k];
+        if (skin && skin_.at(i).of->clamp[skin_.at(i).i] >= 0) continue;
         double nearest = near;
         bool behind = false;
         for (std::uint32_t e = 0; e < block.count[k]; ++e) {
@@ -230,7 +243,8 @@ std::string Guard<Dim>::suspect(const ParticleSet<Dim>& set, Index i, const std:
   const std::string path = fmt::format("{}[{}]", wall ? "boundaries" : "bodies", part);
   const Place at = model.place_of(path);
   const std::string name = wall ? (part < model.boundaries.size() ? model.boundaries[part]->name : "") : (part < model.bodies.size() ? model.bodies[part].name : "");
-  std::string out = fmt::format("; it belongs to {} '{}' ({}:{}:{})", wall ? "boundary" : "body", name, at.file, at.line, at.column);
+  std::string out = name.empty() ? "; it has entered through a boundary"
+                                 : fmt::format("; it belongs to {} '{}' ({}:{}:{})", wall ? "boundary" : "body", name, at.file, at.line, at.column);
   if (world_.model().body_force && !world_.pull(set.vector(fields::position)[i]).allFinite()) {
     const Place force = model.place_of("body_force");
     out += fmt::format("; body_force is not finite there ({}:{}:{})", force.file, force.line, force.column);
@@ -273,6 +287,7 @@ void Guard<Dim>::save(StateSink& sink) const {
   for (const auto& [name, n] : initial_) sink.put_count("guard/initial/" + name, n);
   for (const auto& [name, n] : in_walls_) sink.put_count("guard/in_walls/" + name, n);
   sink.put_number("guard/largest_dt", largest_dt_);
+  sink.put_number("guard/largest_solid", largest_solid_);
   sink.put_number("guard/largest_mach", largest_mach_);
   std::vector<double> flat;
   for (const auto& [low, high] : seen_) flat.insert(flat.end(), {low, high});
@@ -287,6 +302,7 @@ void Guard<Dim>::load(const StateSource& source) {
   for (const auto& s : world_.sets())
     if (const std::string at = "guard/in_walls/" + s->name(); source.has(at)) in_walls_[s->name()] = source.count(at);
   largest_dt_ = source.number("guard/largest_dt");
+  largest_solid_ = source.has("guard/largest_solid") ? source.number("guard/largest_solid") : 0;
   largest_mach_ = source.number("guard/largest_mach");
   std::vector<double> flat(2 * seen_.size());
   source.get("guard/seen", std::span<double>(flat));

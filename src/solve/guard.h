@@ -8,12 +8,13 @@
 #include <vector>
 
 #include "core/error.h"
+#include "effects/skin.h"
 #include "plan/plan.h"
 
 namespace sphgeo {
 
 /// Checks: every acoustic step, the speed against the speed of sound (which a value that is no number
-/// anywhere in the sums reaches within the same step) and the size of the step; every advection step, all
+/// anywhere in the sums reaches within the same step) and the size of the step and of the steps of solids in it; every advection step, all
 /// saved fields of sets that move for values that are not finite, the bounds that the effects declare
 /// (density, volume fraction), and lost particles; every 16th and before a checkpoint, also sets at rest
 /// (whose values nobody reads again) and particles that sit inside a wall. All throw UnstableError.
@@ -39,6 +40,7 @@ class Guard {
 
  private:
   void check_speed(const StepLimits& limits);
+  [[noreturn]] void stop_collapsed(const char* which, double dt, double before, const StepLimits& limits);
   void check_fields(bool at_rest_too);
   void check_bounds(bool note);
   void check_lost();
@@ -51,9 +53,11 @@ class Guard {
   const World<Dim>& world_;
   const Plan<Dim>& plan_;
   std::vector<FieldBound> bounds_;
+  SkinMap<Dim> skin_;
   std::map<std::string, Index> initial_;   ///< particles at the start, by set
   std::map<std::string, Index> in_walls_;  ///< at the latest count, by set
   double largest_dt_ = 0;
+  double largest_solid_ = 0;
   double largest_mach_ = 0;
   std::vector<std::pair<double, double>> seen_;  ///< smallest and largest value of each bound
   double seconds_ = 0;

@@ -24,6 +24,7 @@ bool Stepper<Dim>::run(double end, const RunHooks& hooks) {
 
 template <int Dim>
 void Stepper<Dim>::rearrange() {
+  plan_.run(Stage::exchange);
   const auto start = std::chrono::steady_clock::now();
   world_.rearrange();
   seconds_rearranging_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

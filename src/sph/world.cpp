@@ -220,6 +220,15 @@ void World<Dim>::save(StateSink& sink) const {
   sink.put("domain/lo", std::span<const double>(lo_.data(), Dim));
   sink.put("domain/hi", std::span<const double>(hi_.data(), Dim));
   for (const auto& [name, n] : lost_) sink.put_count("lost/" + name, n);
+  for (const auto& [name, number] : kept_) sink.put_number("kept/" + name, number);
+  for (const auto& [name, book] : exchanged_) {
+    const std::string at = "exchanged/" + name + "/";
+    sink.put_number(at + "entered", book.entered);
+    sink.put_number(at + "left", book.left);
+    sink.put_number(at + "mass", book.mass);
+    sink.put(at + "momentum", std::span<const double>(book.momentum.data(), Dim));
+    sink.put_number(at + "energy", book.energy);
+  }
   for (const auto& s : sets_) s->save(sink);
 }
 
@@ -236,6 +245,15 @@ void World<Dim>::load(const StateSource& source) {
   source.get("domain/hi", std::span<double>(hi.data(), Dim));
   set_domain(lo, hi);
   for (auto& [name, n] : lost_) n = source.count("lost/" + name);
+  for (auto& [name, number] : kept_) number = source.number("kept/" + name);
+  for (auto& [name, book] : exchanged_) {
+    const std::string at = "exchanged/" + name + "/";
+    book.entered = source.number(at + "entered");
+    book.left = source.number(at + "left");
+    book.mass = source.number(at + "mass");
+    source.get(at + "momentum", std::span<double>(book.momentum.data(), Dim));
+    book.energy = source.number(at + "energy");
+  }
   for (auto& s : sets_) s->load(source);
   grids_.clear();  // also those of sets at rest are to be built anew
 }

@@ -47,6 +47,22 @@ struct RecordPair {
   }
 };
 
+/// What came in and went out through one boundary so far; per metre of depth in 2D.
+template <int Dim>
+struct Exchanged {
+  double entered = 0, left = 0;            ///< particles
+  double mass = 0;                         ///< that came in, less what went out, kg
+  Vec<Dim> momentum = Vec<Dim>::Zero();    ///< the same, kg m/s
+  double energy = 0;                       ///< kinetic and potential, the same, J
+
+  /// Adds what a particle brings (sign 1) or takes away (-1).
+  void add(double sign, double m, const Vec<Dim>& at, const Vec<Dim>& v, const Vec<Dim>& gravity) {
+    mass += sign * m;
+    momentum += sign * m * v;
+    energy += sign * m * (0.5 * v.squaredNorm() - gravity.dot(at));
+  }
+};
+
 template <int Dim>
 class World {
  public:
@@ -107,6 +123,12 @@ class World {
   /// Particles that left the domain so far, by set.
   const std::map<std::string, Index>& lost() const { return lost_; }
 
+  /// The book of a boundary that particles cross; made at the first call, saved and loaded.
+  Exchanged<Dim>& exchanged(const std::string& boundary) { return exchanged_[boundary]; }
+  const std::map<std::string, Exchanged<Dim>>& exchanged() const { return exchanged_; }
+  /// A number that an effect keeps from step to step: 0 at first, saved and loaded.
+  double& kept(const std::string& name) { return kept_[name]; }
+
   /// Whether the particles of a set change place.
   bool moves(const std::string& set) const { return moves_.at(set); }
 
@@ -146,6 +168,8 @@ class World {
   std::map<std::string, PairWeights<Dim>> reference_weights_;
   std::map<std::pair<std::string, int>, RecordPair<Dim>> records_;
   std::map<std::string, Index> lost_;
+  std::map<std::string, Exchanged<Dim>> exchanged_;
+  std::map<std::string, double> kept_;
   long arrangement_ = 0;
   Vec<Dim> lo_ = Vec<Dim>::Zero(), hi_ = Vec<Dim>::Zero();
   FixedPoint<Dim> frame_;

@@ -5,6 +5,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "report/run_record.h"
 
 namespace sphgeo {
 
@@ -12,26 +13,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::optional<double> number_in(const Json& object, const char* key) {
-  const auto at = object.find(key);
-  return at != object.end() && at->is_number() ? std::optional<double>(at->get<double>()) : std::nullopt;
-}
-
-std::string text_in(const Json& object, const char* key) {
-  const auto at = object.find(key);
-  return at != object.end() && at->is_string() ? at->get<std::string>() : "";
-}
-
 RecordedResult recorded(const Json& row) {
-  RecordedResult r;
-  r.name = text_in(row, "name");
-  r.value = number_in(row, "value");
-  r.reference = number_in(row, "reference");
-  r.error = number_in(row, "error");
-  r.tolerance = number_in(row, "tolerance").value_or(0);
-  r.pass = row.value("pass", false);
-  r.note = text_in(row, "note");
-  return r;
+  const Json& pass = value_at(row, "/pass");
+  return {text_at(row, "/name"), number_at(row, "/value"), number_at(row, "/reference"), number_at(row, "/error"), number_at(row, "/tolerance").value_or(0),
+          pass.is_boolean() && pass.get<bool>(), text_at(row, "/note")};
 }
 
 /// The runs of a curve that say something about the claim; coarsest first where spacings differ.
@@ -74,13 +59,7 @@ void judge(StudyResult& result, const StudyClaim& claim) {
   for (std::size_t k = 0; k < values.size(); ++k)
     levels.push_back({result.runs[k]->spacing, *values[k].value, known ? result.errors[k] : std::nullopt});
   result.convergence = convergence(levels);
-  if (claim.norm) result.convergence.gci.reset();  // a share of an error that goes to zero means nothing
-}
-
-std::string setting_of(const StudyRun& run, const std::string& key) {
-  for (const auto& [name, value] : run.settings)
-    if (name == key) return value;
-  return "";
+  if (claim.norm || values.back().reference == 0.0) result.convergence.gci.reset();  // a share of an error that goes to zero means nothing
 }
 
 Offer offer(const StudyResult& result, std::size_t k) {
@@ -108,40 +87,41 @@ void mark_front(std::span<StudyResult> curves) {
 
 }  // namespace
 
-const RecordedResult* RunRecord::result(const std::string& name) const {
+const RecordedResult* RunOutcome::result(const std::string& name) const {
   for (const RecordedResult& r : results)
     if (r.name == name) return &r;
   return nullptr;
 }
 
-RunRecord read_run_record(const std::string& folder) {
-  RunRecord record;
-  record.status = "missing";
+RunOutcome read_outcome(const std::string& folder) {
+  RunOutcome run;
+  run.status = "missing";
   Json summary;
   try {
     summary = Json::parse(read_file(folder + "/summary.json"), nullptr, false);
   } catch (const IoError&) {
-    return record;
+    return run;
   }
-  if (!summary.is_object() || text_in(summary, "status").empty()) return record;
-  record.status = text_in(summary, "status");
-  record.message = text_in(summary, "message");
-  record.wall_s = number_in(summary, "wall_s").value_or(0);
-  record.memory_bytes = number_in(summary, "memory_peak_bytes").value_or(0);
-  record.threads = static_cast<int>(number_in(summary, "threads").value_or(1));
-  if (const auto steps = summary.find("steps"); steps != summary.end() && steps->is_object())
-    record.acoustic_steps = static_cast<long>(number_in(*steps, "acoustic").value_or(0));
-  if (const auto sets = summary.find("particles"); sets != summary.end() && sets->is_object())
-    for (const auto& [name, count] : sets->items())
-      if (count.is_number()) record.particles += count.get<long>();
-  if (const auto forecast = summary.find("forecast"); forecast != summary.end() && forecast->is_object()) {
-    record.forecast_wall_s = number_in(*forecast, "wall_s");
-    record.forecast_memory_bytes = number_in(*forecast, "memory_bytes");
-  }
-  if (const auto expects = summary.find("expect"); expects != summary.end() && expects->is_array())
-    for (const Json& row : *expects)
-      if (row.is_object()) record.results.push_back(recorded(row));
-  return record;
+  if (text_at(summary, "/status").empty()) return run;
+  run.status = text_at(summary, "/status");
+  run.message = text_at(summary, "/message");
+  run.wall_s = number_at(summary, "/wall_s").value_or(0);
+  run.memory_bytes = number_at(summary, "/memory_peak_bytes").value_or(0);
+  run.threads = static_cast<int>(number_at(summary, "/threads").value_or(1));
+  run.acoustic_steps = static_cast<long>(number_at(summary, "/steps/acoustic").value_or(0));
+  for (const Json& count : value_at(summary, "/particles"))
+    if (count.is_number()) run.particles += count.get<long>();
+  run.forecast_wall_s = number_at(summary, "/forecast/wall_s");
+  run.forecast_memory_bytes = number_at(summary, "/forecast/memory_bytes");
+  for (const Json& row : value_at(summary, "/expect"))
+    if (row.is_object()) run.results.push_back(recorded(row));
+  return run;
+}
+
+std::string setting_of(const StudyRun& run, const std::string& key) {
+  for (const auto& [name, value] : run.settings)
+    if (name == key) return value;
+  return "";
 }
 
 std::vector<StudyResult> study_results(const Study& study) {

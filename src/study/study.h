@@ -22,7 +22,7 @@ struct RecordedResult {
 };
 
 /// What a run did, from its summary.json.
-struct RunRecord {
+struct RunOutcome {
   std::string status;   ///< done, unstable, stopped, failed; "missing" without a summary
   std::string message;  ///< why it did not end as planned
   double wall_s = 0;
@@ -37,14 +37,14 @@ struct RunRecord {
 };
 
 /// Reads summary.json of a run folder; status "missing" when there is none or it cannot be read.
-RunRecord read_run_record(const std::string& folder);
+RunOutcome read_outcome(const std::string& folder);
 
 /// A run of the study.
 struct StudyRun {
   std::vector<Setting> settings;
   double spacing = 0;  ///< particle spacing that the settings lead to, m
   std::string folder;  ///< below the study's
-  RunRecord record;
+  RunOutcome record;
 };
 
 /// A result that a deck claims, and how its errors are meant.
@@ -80,8 +80,21 @@ struct Study {
 /// The results of the runs so far, claim by claim, curve by curve.
 std::vector<StudyResult> study_results(const Study& study);
 
+/// The value of a run's setting, as written; "" when it has no such setting.
+std::string setting_of(const StudyRun& run, const std::string& key);
+/// The claim of that name, which must exist.
+const StudyClaim& claim_of(const Study& study, const std::string& name);
+/// "1.5 %" or "0.015"; "-" for none.
+std::string error_cell(const std::optional<double>& error, bool relative);
+/// "monotone; order 1.02 (from the values); Richardson 0.51; GCI 1.2 %".
+std::string convergence_text(const Convergence& convergence);
+
 /// study.json.
 nlohmann::ordered_json to_json(const Study& study, const std::vector<StudyResult>& results);
+
+/// A page that needs no other file: for each result its errors against the time they took, with the Pareto front, and
+/// its table; then the runs.
+std::string study_page(const Study& study, const std::vector<StudyResult>& results);
 
 /// Tables and sentences for the terminal.
 std::string render_study(const Study& study, const std::vector<StudyResult>& results);

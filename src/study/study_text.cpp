@@ -34,6 +34,8 @@ std::string cell(const std::optional<double>& value) { return value ? fmt::forma
 
 std::string wall_text(double seconds) { return seconds < 10 ? fmt::format("{:.2f} s", seconds) : duration_text(seconds); }
 
+}  // namespace
+
 const StudyClaim& claim_of(const Study& study, const std::string& name) {
   return *std::find_if(study.claims.begin(), study.claims.end(), [&](const StudyClaim& c) { return c.name == name; });
 }
@@ -51,14 +53,6 @@ std::string convergence_text(const Convergence& c) {
   return text;
 }
 
-std::string setting_of(const StudyRun& run, const std::string& key) {
-  for (const auto& [name, value] : run.settings)
-    if (name == key) return value;
-  return "";
-}
-
-}  // namespace
-
 Json to_json(const Study& study, const std::vector<StudyResult>& results) {
   Json out;
   out["deck"] = study.deck;
@@ -74,7 +68,7 @@ Json to_json(const Study& study, const std::vector<StudyResult>& results) {
   }
   out["runs"] = Json::array();
   for (const StudyRun& run : study.runs) {
-    const RunRecord& r = run.record;
+    const RunOutcome& r = run.record;
     Json row = {{"settings", settings_json(run.settings)}, {"folder", run.folder}, {"resolution", run.spacing}, {"status", r.status}};
     if (!r.message.empty()) row["message"] = r.message;
     row["wall_s"] = r.wall_s;
@@ -139,7 +133,7 @@ std::string render_study(const Study& study, const std::vector<StudyResult>& res
                        "error", "", "wall time", "forecast", "particles", "steps", "memory");
     for (std::size_t k = 0; k < r.runs.size(); ++k) {
       const StudyRun& run = *r.runs[k];
-      const RunRecord& record = run.record;
+      const RunOutcome& record = run.record;
       out += fmt::format("  {:>14}  {:>9.4g}  {:>11}  {:>10}  {:>5}  {:>11}  {:>11}  {:>10}  {:>9}  {:>9}{}\n", shortened(printable(setting_of(run, r.curve->key)), 14),
                          run.spacing, cell(r.values[k].value), error_cell(r.errors[k], claim.relative), r.values[k].pass ? "pass" : "FAIL",
                          wall_text(record.wall_s), record.forecast_wall_s ? wall_text(*record.forecast_wall_s) : "-", record.particles,

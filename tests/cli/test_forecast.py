@@ -15,7 +15,7 @@ from pathlib import Path
 
 SPHGEO = None
 ROOT = Path(__file__).resolve().parents[2]
-QUICK = str(ROOT / "decks" / "quickstart.yaml")
+QUICK = str(ROOT / "decks/basics/gate_and_sill.yaml")
 
 
 def call(*words, memory=None):

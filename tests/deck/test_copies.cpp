@@ -79,6 +79,10 @@ TEST_SUITE("deck") {
     says("{count: 2, region: {type: half_space, point: [0, 0, 1]}}", "unbounded");
     says("{count: 2, region: {type: box, min: [-1, 0, 0], max: [1, 0, 2]}, sizes: [2, 1]}", "larger than the largest");
     says("{count: 0, region: {type: box, min: [-1, 0, 0], max: [1, 0, 2]}}", "0");
+    const auto misspelt = findings("dimension: 2\nresolution: 0.1\nend_time: 1\nmaterials: [{name: w, type: water, sound_speed: 10}]\n"
+                                   "bodies: [{name: b, material: w, shape: {type: sphere, center: [0, 0, 0], radius: 1}, copys: {}}]\n");
+    REQUIRE(misspelt.size() == 1);
+    CHECK(misspelt[0].help == "did you mean 'copies'?");
     says("{cuont: 2, region: {type: box, min: [-1, 0, 0], max: [1, 0, 2]}}", "cuont");
     says("{count: 2, region: {type: box, min: [-1, 0, 0], max: [1, 0, 2]}}", "radios", "{type: sphere, center: [0, 0, 0], radios: r}");
   }

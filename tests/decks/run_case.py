@@ -1,11 +1,15 @@
 #!/usr/bin/env python3
 """Runs a deck with 1, 2 and 4 threads: each run ends well, what the deck expects is met, the run folder
-is complete and its resolved deck is a valid deck, and the results are the same bits.
+is complete and its resolved deck is a valid deck, the results are the same bits, and they are what they were
+when the baseline of the case was written (baselines/NAME.json, within tolerances.yaml; with --lively tolerances_lively.yaml).
 
-    run_case.py SPHGEO DECK RUN_FOLDER [--unverified] [--no-frames] [sphgeo run options...]
+    run_case.py SPHGEO DECK RUN_FOLDER [--unverified] [--no-frames] [--lively] [sphgeo run options...]
 
 --no-frames: the scene has no particles. --unverified: the run is too short for what the deck expects; everything else is checked.
+With SPHGEO_UPDATE_BASELINES=1 in the environment the baseline is written anew instead of compared with.
 """
+import json
+import os
 import shutil
 import subprocess
 import sys
@@ -16,6 +20,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from run_folder import differing, results  # noqa: E402
 
 THREADS = (1, 2, 4)
+HERE = Path(__file__).resolve().parent
 
 
 def call(*words):
@@ -44,10 +49,30 @@ def check_folder(sphgeo, folder, found):
             yield f"{pvd.name} names frames that are not there, or none"
 
 
+def compare(sphgeo, run, name, tolerances):
+    """A sentence for every difference from the case's baseline."""
+    baseline = HERE / "baselines" / f"{name}.json"
+    if os.environ.get("SPHGEO_UPDATE_BASELINES"):
+        call(sphgeo, "compare", run, baseline, "--update")
+        return
+    if not baseline.is_file():
+        yield f"there is no {baseline.name}: run this test with SPHGEO_UPDATE_BASELINES=1 and look at what it writes"
+        return
+    done = subprocess.run([sphgeo, "compare", run, baseline, "--tolerances", HERE / tolerances, "--json"],
+                          capture_output=True, text=True)
+    if done.returncode not in (0, 4):
+        yield f"sphgeo compare: exit {done.returncode}: {done.stderr.strip()}"
+        return
+    for d in json.loads(done.stdout)["differences"]:
+        if not d["pass"]:
+            yield f"{d['kind']} {d['name']}: differs by {d['difference']}, tolerance {d['tolerance']} ({d['note']})"
+
+
 def main():
     sphgeo, deck, folder, options = sys.argv[1], Path(sys.argv[2]), Path(sys.argv[3]), sys.argv[4:]
     verify = [] if "--unverified" in options else ["--verify"]
-    options = [o for o in options if o not in ("--unverified", "--no-frames")]
+    tolerances = "tolerances_lively.yaml" if "--lively" in options else "tolerances.yaml"
+    options = [o for o in options if o not in ("--unverified", "--no-frames", "--lively")]
     shutil.rmtree(folder, ignore_errors=True)
     wrong, first = [], None
     for threads in THREADS:
@@ -58,6 +83,7 @@ def main():
         if first is None:
             first = found
             wrong += check_folder(sphgeo, here, found)
+            wrong += compare(sphgeo, here, folder.name, tolerances)
         wrong += [f"{name} differs between {THREADS[0]} and {threads} threads" for name in differing(first, found)]
     for sentence in wrong:
         print(f"{folder}: {sentence}")

@@ -42,8 +42,8 @@ const std::string water = "  - {name: pool, material: water, shape: {type: box, 
 const std::string sand = "  - {name: bed, material: sand, shape: {type: box, min: [0, 0, 0], max: [0.4, 0.2, 0.3]}}\n";
 
 template <int Dim>
-Json plan_of(const std::string& deck) {
-  Rig<Dim> rig("dimension: " + std::to_string(Dim) + "\n" + deck);
+Json plan_of(const std::string& deck, const std::vector<std::string>& overrides = {}) {
+  Rig<Dim> rig("dimension: " + std::to_string(Dim) + "\n" + deck, overrides);
   std::vector<std::string> sets;
   for (const auto& s : rig.world.sets()) sets.push_back(s->name());
   rig.plan_it(wishes_of(rig.model, sets));
@@ -83,6 +83,28 @@ TEST_SUITE("explain") {
   TEST_CASE("plan of one elastic solid alone") { compare("solid", plan_of<3>(solids(plate))); }
   TEST_CASE("plan of an elastic and a rigid solid") { compare("solids", plan_of<3>(solids(plate + boulder))); }
   TEST_CASE("plan of solids in water") { compare("water_solids", plan_of<2>(solids(water + plate + boulder))); }
+  TEST_CASE("plan of soil alone") { compare("soil", plan_of<3>(solids(sand))); }
+  TEST_CASE("plan of soil in a tank with probes") {
+    compare("soil_with_probes", plan_of<2>(solids(sand) + tank + "probes:\n  - {name: inside, type: stress, at: [0.2, 0.1, 0.1]}\n"
+                                           "  - {name: push, type: force, boundary: tank}\n  - {name: moments, type: moments, set: soil}\n"));
+  }
+  TEST_CASE("plan of soil and its pore water") { compare("water_soil", plan_of<2>(solids(water + sand) + "relaxation: {steps: 2}\n")); }
+  TEST_CASE("plan of soil and water with probes and without drag") {
+    compare("water_soil_with_probes", plan_of<2>(solids(water + sand) + tank + "relaxation: {steps: 2}\nprobes:\n"
+                                                 "  - {name: inside, type: stress, at: [0.2, 0.1, 0.1]}\n"
+                                                 "  - {name: pores, type: mean, set: water, field: water_fraction}\n", {"materials.sand.drag=none"}));
+  }
+  TEST_CASE("an effect that the deck switches off is in no plan, and the plan says what that means") {
+    Rig<2> rig("dimension: 2\n" + solids(water + sand) + "relaxation: {steps: 2}\nwithout: [drag]\n");
+    rig.plan_it({});
+    for (const auto& e : rig.plan->effects()) {
+      CHECK(e.info.name != "drag");
+    }
+    int told = 0;
+    for (const auto& u : rig.plan->unused())
+      if (u.because.find("switched off by the deck: ") == 0) ++told;
+    CHECK(told == 1);
+  }
   TEST_CASE("plan of a boulder on soil") { compare("soil_boulder", plan_of<2>(solids(sand + boulder))); }
   TEST_CASE("plan of everything") { compare("all_phases", plan_of<2>(solids(water + sand + plate + boulder) + tank + "relaxation: {steps: 2}\n")); }
   TEST_CASE("plan of a tank with a gate in 3D") { compare("gate", plan_of<3>(head + pool + gates)); }

@@ -59,7 +59,7 @@ TEST_SUITE("report") {
     CHECK(axis.title() == "pressure (10³\u00a0Pa)");
     CHECK(axis.text(20000) == "20");
     const AxisScale small({"", "m", false, {}, {}}, -0.0004, 0.0004, 5);
-    CHECK(small.title() == "(10⁻⁶\u00a0m)");
+    CHECK(small.title() == "10⁻⁶\u00a0m");
     CHECK(small.text(-0.0002) == "−200");
     const AxisScale plain({"share", "1", false, {}, {}}, 0, 1, 5);
     CHECK(plain.title() == "share");
@@ -130,6 +130,9 @@ TEST_SUITE("report") {
     CHECK(number_text(std::nan("")) == "–");
     CHECK(count_text(1234567) == "1\u202f234\u202f567");
     CHECK(count_text(-12) == "−12");
+    CHECK(unit_text("kg/m3") == "kg/m³");
+    CHECK(unit_text("kg m/s") == "kg m/s");
+    CHECK(unit_text("1").empty());
   }
 
   TEST_CASE("base64 and scripts") {

@@ -81,6 +81,39 @@ TEST_SUITE("scene") {
     CHECK(findings("gravity: 0\n" + pool, ", max_speed: 1").empty());
   }
 
+  TEST_CASE("lattice_jitter moves particles by no more than it says, another seed otherwise, and no body as another") {
+    const auto places = [](const std::string& numerics) {
+      const std::string two = "bodies:\n  - {name: a, material: water, shape: {type: box, min: [0, 0, 0], max: [0.5, 0.2, 0.3]}}\n"
+                              "  - {name: b, material: water, shape: {type: box, min: [1, 0, 0], max: [1.5, 0.2, 0.3]}}\n";
+      Rig<2> rig(deck("", two + numerics));
+      const auto& x = rig.water().vector(fields::position);
+      std::vector<Vec<2>> out;
+      for (Index k = 0; k < rig.water().size(); ++k) out.push_back(x[k]);
+      return out;
+    };
+    const auto lattice = places(""), jittered = places("numerics: {lattice_jitter: 0.1}");
+    const auto other = places("numerics: {lattice_jitter: 0.1, lattice_seed: 2}");
+    REQUIRE(lattice.size() == 120);
+    double largest = 0;
+    bool bodies_alike = true, seeds_alike = true;
+    for (std::size_t k = 0; k < lattice.size(); ++k) {
+      largest = std::max(largest, (jittered[k] - lattice[k]).cwiseAbs().maxCoeff());
+      seeds_alike = seeds_alike && jittered[k] == other[k];
+      if (k < 60) bodies_alike = bodies_alike && (jittered[k] - lattice[k] - jittered[k + 60] + lattice[k + 60]).norm() < 1e-12;
+    }
+    CHECK(largest <= 0.1 * 0.05 + 1e-12);
+    CHECK(largest > 0.09 * 0.05);
+    CHECK_FALSE(seeds_alike);
+    CHECK_FALSE(bodies_alike);
+    CHECK(places("numerics: {lattice_jitter: 0.1}") == jittered);
+  }
+
+  TEST_CASE("an effect is switched off with a warning, an unknown one or one that is needed not at all") {
+    CHECK(findings(pool + tank + "without: [drag]\n") == std::multiset<std::string>{"W136"});
+    CHECK(findings(pool + tank + "without: [water_momentum]\n") == std::multiset<std::string>{"E135"});
+    CHECK(findings(pool + tank + "without: [drga]\n") == std::multiset<std::string>{"E135"});
+  }
+
   TEST_CASE("a sound scene has no findings") {
     CHECK(findings(pool + tank).empty());
     CHECK(findings<3>(pool + tank).empty());
@@ -198,6 +231,49 @@ bodies:
   check_scene(scene, found);
   REQUIRE(found.items().size() == 1);
   CHECK(found.items()[0].id == "W130");
+}
+
+TEST_CASE("soil that starts too near to an oblique wall: a warning that it is pushed; none along the lattice") {
+  for (const bool oblique : {false, true}) {
+    CAPTURE(oblique);
+    const std::string turn = oblique ? "17 deg" : "0 deg";
+    const Model model = read_deck_text(R"(
+dimension: 2
+resolution: 0.05
+end_time: 1
+materials: [{name: sand, type: soil, density: 2600, volume_fraction: 0.6, youngs_modulus: 5e6, friction_angle: 30 deg}]
+bodies:
+  - name: bank
+    material: sand
+    filling: relaxed
+    shape: {type: transform, rotate: )" + turn + R"(, of: {type: box, min: [0, 0, 0], max: [1, 0.2, 0.3]}}
+boundaries:
+  - name: slope
+    type: wall
+    shape: {type: transform, rotate: )" + turn + R"(, of: {type: box, min: [-0.5, 0, -0.5], max: [1.5, 0.2, 0]}}
+)", {}, "deck", SPHGEO_SOURCE_DIR);
+    Diagnostics found;
+    const Scene<2> scene = build_scene<2>(model, found);
+    check_scene(scene, found);
+    const auto& x = scene.world->set("soil").vector(fields::position);
+    const auto& y = scene.world->set("walls").vector(fields::position);
+    int near = 0;
+    for (Index i = 0; i < x.size(); ++i) {
+      bool close = false;
+      for (Index j = 0; j < y.size(); ++j) close = close || (x[i] - y[j]).norm() < 0.7 * 0.05;
+      near += close ? 1 : 0;
+    }
+    bool warned = false;
+    for (const Diagnostic& d : found.items()) {
+      CHECK(d.id == "W134");
+      CAPTURE(d.message);
+      CAPTURE(near);
+      CHECK(d.message.find(": " + std::to_string(near) + " of its particles") != std::string::npos);
+      CHECK(d.place.line > 0);
+      warned = true;
+    }
+    CHECK(warned == oblique);
+  }
 }
 
 }

@@ -103,6 +103,9 @@ TEST_SUITE("solve") {
     const StepLimits other = limits_of(block("[3, 0, 4]"), {"numerics.cfl_acoustic=0.3", "numerics.cfl_advection=0.1"});
     CHECK(other.acoustic == doctest::Approx(0.3 * h / (c0 + 5)));
     CHECK(other.advection == doctest::Approx(0.1 * h / 5));
+    const StepLimits half = limits_of(block("[3, 0, 4]"), {"numerics.time_step_factor=0.5"});
+    CHECK(half.acoustic == doctest::Approx(0.2 * h / (c0 + 5)));
+    CHECK(half.advection == doctest::Approx(0.1 * h / 5));
   }
 
   TEST_CASE("acoustic steps divide the advection step evenly") {

@@ -12,7 +12,7 @@ def results(folder):
     found = {}
     for path in sorted(p for p in folder.rglob("*") if p.is_file()):
         name = path.relative_to(folder).as_posix()
-        if name.startswith("checkpoint"):
+        if name.startswith("checkpoint") or name == "report.html":  # it shows wall times
             continue
         if name == "summary.json":
             summary = json.loads(path.read_text())

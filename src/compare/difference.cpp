@@ -1,0 +1,268 @@
+#include "compare/difference.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/hash.h"
+#include "core/parallel.h"
+#include "core/text.h"
+
+namespace sphgeo {
+
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+/// Places of a set that are looked up in the other run: enough for a mean, few enough for sets of millions.
+constexpr std::size_t most_places = 2000;
+
+struct Span {
+  double least = infinite, most = -infinite;
+  void add(double v) {
+    if (!std::isfinite(v)) return;
+    least = std::min(least, v);
+    most = std::max(most, v);
+  }
+  double size() const { return most > least ? most - least : 0; }
+  double largest() const { return most >= least ? std::max(std::abs(least), std::abs(most)) : 0; }
+};
+
+/// What is smaller than this share of its companions is noise about zero.
+constexpr double least_share = 0.01;
+
+std::string vector_of(const std::string& field) { return field.substr(0, field.find('.')); }
+
+Span span_of(const std::vector<double>& values) {
+  Span span;
+  for (const double v : values) span.add(v);
+  return span;
+}
+
+/// A difference as a share; of a scale of zero any difference is one of all.
+double share(double difference, double scale) {
+  if (difference == 0) return 0;
+  return scale > 0 ? difference / scale : infinite;
+}
+
+class Comparison {
+ public:
+  Comparison(const RunData& run, const RunData& base, const Tolerances& tolerances) : run_(run), base_(base), tolerances_(tolerances) {}
+
+  std::vector<Difference> operator()() {
+    const bool same = run_.status == base_.status;
+    found_.push_back({"status", "", same ? 0 : infinite, 0, same, same ? "" : run_.status + ", was " + base_.status});
+    compare_steps();
+    compare_probes();
+    compare_sets();
+    compare_ledger();
+    compare_results();
+    std::stable_sort(found_.begin(), found_.end(), [](const Difference& a, const Difference& b) { return severity(a) > severity(b); });
+    return std::move(found_);
+  }
+
+ private:
+  /// Above 1: fails.
+  static double severity(const Difference& d) {
+    if (d.kind == "new") return -1;
+    if (std::isinf(d.tolerance)) return 0;
+    if (d.tolerance == 0) return d.difference == 0 ? 0 : infinite;
+    return d.difference / d.tolerance;
+  }
+
+  void add(const std::string& kind, const std::string& name, double difference, std::string note = {}) {
+    const double tolerance = tolerances_.of(kind, name);
+    found_.push_back({kind, name, difference, tolerance, difference <= tolerance, std::move(note)});
+  }
+  void missing(const std::string& kind, const std::string& name) { found_.push_back({"missing", kind + " " + name, infinite, 0, false, "only the baseline has it"}); }
+  void added(const std::string& kind, const std::string& name) { found_.push_back({"new", kind + " " + name, 0, 0, true, "only the run has it"}); }
+
+  /// Calls `both(run's, base's)` for what stands in both under the same name, and reports the rest.
+  template <class List, class Name, class Both>
+  void match(const std::string& kind, const List& run, const List& base, Name&& name, Both&& both) {
+    for (const auto& b : base) {
+      const auto at = std::find_if(run.begin(), run.end(), [&](const auto& r) { return name(r) == name(b); });
+      if (at == run.end()) missing(kind, name(b));
+      else both(*at, b);
+    }
+    for (const auto& r : run)
+      if (std::none_of(base.begin(), base.end(), [&](const auto& b) { return name(r) == name(b); })) added(kind, name(r));
+  }
+
+  void compare_steps() {
+    match("steps", run_.steps, base_.steps, [](const auto& s) { return s.first; }, [&](const auto& r, const auto& b) {
+      add("steps", b.first, share(std::abs(r.second - b.second), b.second), fmt::format("{:.0f}, was {:.0f}", r.second, b.second));
+    });
+  }
+
+  void compare_probes() {
+    match("probe", run_.probes, base_.probes, [](const ProbeCurve& c) { return c.probe + "." + c.column; }, [&](const ProbeCurve& r, const ProbeCurve& b) {
+      const CurveDistance d = curve_distance(r, b);
+      double scale = d.range;
+      for (const ProbeCurve& other : base_.probes)
+        if (other.probe == b.probe && other.unit == b.unit) scale = std::max(scale, least_share * span_of(other.y).size());
+      const std::string name = b.probe + "." + b.column;
+      std::string note = fmt::format("range {:.4g}", d.range);
+      if (d.unsupported > 0) note += fmt::format("; at {:.3g} % of the times only one has a value", 100 * d.unsupported);
+      add("probe", name, std::max(share(d.rms, scale), d.unsupported), note);
+    });
+  }
+
+  void compare_sets() {
+    match("set", run_.sets, base_.sets, [](const SetState& s) { return s.set; }, [&](const SetState& r, const SetState& b) {
+      const double change = static_cast<double>(std::abs(r.particles - b.particles));
+      add("particles", b.set, share(change, static_cast<double>(b.particles)), fmt::format("{}, were {}", r.particles, b.particles));
+      if (b.places.empty()) return;
+      if (r.places.empty()) return missing("particles of", b.set);
+      compare_fields(r, b);
+    });
+  }
+
+  void compare_fields(const SetState& r, const SetState& b) {
+    std::vector<std::size_t> sample;
+    for (std::size_t k = 0; k < b.places.size(); ++k)
+      if (b.places.size() <= most_places || random_bits(2, k) % b.places.size() < most_places) sample.push_back(k);
+    std::vector<Vec3> places;
+    for (const std::size_t k : sample) places.push_back(b.places[k]);
+    const std::vector<std::size_t> nearest = nearest_places(places, r.places);
+    double sum = 0;
+    for (std::size_t k = 0; k < places.size(); ++k) sum += (places[k] - r.places[nearest[k]]).norm();
+    const double mean = sum / static_cast<double>(places.size());
+    add("places", b.set, base_.resolution > 0 ? mean / base_.resolution : mean, fmt::format("mean {:.3g} m", mean));
+    match("field", r.fields, b.fields, [&](const FieldState& f) { return b.set + "." + f.name; }, [&](const FieldState& fr, const FieldState& fb) {
+      const Span range = span_of(fb.values);
+      double scale = range.size();
+      for (const FieldState& other : b.fields)
+        if (vector_of(other.name) == vector_of(fb.name)) scale = std::max(scale, least_share * span_of(other.values).size());
+      double squares = 0, used = 0, unlike = 0;
+      for (std::size_t k = 0; k < sample.size(); ++k) {
+        const double x = fr.values[nearest[k]], y = fb.values[sample[k]];
+        if (std::isfinite(x) != std::isfinite(y)) unlike += 1;
+        if (!std::isfinite(x) || !std::isfinite(y)) continue;
+        squares += (x - y) * (x - y);
+        used += 1;
+      }
+      double rms = used > 0 ? std::sqrt(squares / used) : 0;
+      // Baselines hold seven digits.
+      if (rms <= 1e-6 * range.largest()) rms = 0;
+      std::string note = fmt::format("range {:.4g}", range.size());
+      if (unlike > 0) note += fmt::format("; {:.0f} particles have a value in only one", unlike);
+      add("field", b.set + "." + fb.name, std::max(share(rms, scale), unlike / static_cast<double>(sample.size())), note);
+    });
+  }
+
+  void compare_ledger() {
+    match("ledger", run_.ledger, base_.ledger, [](const auto& row) { return row.first; }, [&](const auto& r, const auto& b) {
+      Span size;
+      for (const auto* values : {&b.second.initial, &b.second.final})
+        for (const double v : *values) size.add(v);
+      double worst = r.second.final.size() == b.second.final.size() ? 0 : infinite;
+      for (std::size_t k = 0; k < std::min(r.second.final.size(), b.second.final.size()); ++k)
+        worst = std::max(worst, std::abs(r.second.final[k] - b.second.final[k]));
+      // Rounding of the baseline, and momentum that is zero but for rounding.
+      if (worst <= 1e-6 * size.largest() || worst <= 1e-12) worst = 0;
+      add("ledger", b.first, share(worst, size.largest()), fmt::format("size {:.4g}", size.largest()));
+    });
+  }
+
+  void compare_results() {
+    match("result", run_.results, base_.results, [](const auto& row) { return row.first; }, [&](const auto& r, const auto& b) {
+      const ResultState &now = r.second, &then = b.second;
+      if (now.value.has_value() != then.value.has_value())
+        return add("result", b.first, infinite, now.value ? "had no value" : "has no value");
+      if (!now.value) return add("result", b.first, 0, "no value in either");
+      double change = std::abs(*now.value - *then.value);
+      if (change <= 1e-6 * std::abs(*then.value)) change = 0;
+      std::string note = fmt::format("{:.6g}, was {:.6g}", *now.value, *then.value);
+      if (now.pass != then.pass) note += now.pass ? "; passes now" : "; failed its deck's tolerance, passed before";
+      // A value near zero is small against what the deck allows it.
+      const double scale = std::max(std::abs(*then.value), then.tolerance);
+      add("result", b.first, then.pass && !now.pass ? std::max(share(change, scale), 2 * tolerances_.of("result", b.first)) : share(change, scale), note);
+    });
+  }
+
+  const RunData &run_, &base_;
+  const Tolerances& tolerances_;
+  std::vector<Difference> found_;
+};
+
+/// The value of the curve at a time, NaN outside of it and beside gaps. `from` moves along with the time.
+double at_time(const ProbeCurve& curve, double time, std::size_t& from) {
+  const std::vector<double>& t = curve.t;
+  if (t.empty()) return std::nan("");
+  // The last row of a run that took other steps may lie a step earlier or later.
+  if (time >= t.back()) return time <= t.back() + 0.02 * (t.back() - t.front()) ? curve.y.back() : std::nan("");
+  if (time <= t.front()) return time >= t.front() - 0.02 * (t.back() - t.front()) ? curve.y.front() : std::nan("");
+  while (from + 2 < t.size() && t[from + 1] <= time) ++from;
+  const double width = t[from + 1] - t[from];
+  if (!(width > 0)) return curve.y[from + 1];
+  const double w = (time - t[from]) / width;
+  if (w == 0) return curve.y[from];
+  return curve.y[from] + w * (curve.y[from + 1] - curve.y[from]);
+}
+
+}  // namespace
+
+CurveDistance curve_distance(const ProbeCurve& run, const ProbeCurve& baseline) {
+  Span range;
+  double squares = 0, used = 0, unlike = 0;
+  std::size_t from = 0;
+  for (std::size_t k = 0; k < baseline.t.size(); ++k) {
+    const double y = baseline.y[k], x = at_time(run, baseline.t[k], from);
+    range.add(y);
+    if (std::isfinite(x) != std::isfinite(y)) unlike += 1;
+    if (!std::isfinite(x) || !std::isfinite(y)) continue;
+    squares += (x - y) * (x - y);
+    used += 1;
+  }
+  double rms = used > 0 ? std::sqrt(squares / used) : 0;
+  if (rms <= 1e-6 * range.largest()) rms = 0;
+  const double n = static_cast<double>(std::max<std::size_t>(1, baseline.t.size()));
+  return {rms, range.size(), unlike / n};
+}
+
+std::vector<std::size_t> nearest_places(const std::vector<Vec3>& places, const std::vector<Vec3>& among) {
+  std::vector<std::size_t> nearest(places.size(), 0);
+  parallel_for(static_cast<Index>(places.size()), [&](Index p) {
+    const auto k = static_cast<std::size_t>(p);
+    double least = infinite;
+    for (std::size_t j = 0; j < among.size(); ++j) {
+      const double d = (places[k] - among[j]).squaredNorm();
+      if (d < least) {
+        least = d;
+        nearest[k] = j;
+      }
+    }
+  });
+  return nearest;
+}
+
+std::vector<Difference> compare_runs(const RunData& run, const RunData& baseline, const Tolerances& tolerances) {
+  return Comparison(run, baseline, tolerances)();
+}
+
+std::string render_differences(const std::vector<Difference>& differences, std::size_t shown) {
+  std::size_t width = 4;
+  std::size_t passed = 0;
+  const auto listed = [&](const Difference& d) { return !d.pass || passed < shown; };
+  for (const Difference& d : differences) width = std::max(width, std::min<std::size_t>(40, d.whole_name().size()));
+  std::string out = fmt::format("  {:<{}}  {:>10}  {:>10}\n", "what", width, "difference", "tolerance");
+  for (const Difference& d : differences) {
+    if (!listed(d)) continue;
+    if (d.pass) ++passed;
+    out += fmt::format("  {:<{}}  {:>10}  {:>10}  {}{}\n", printable(d.whole_name()), width, fmt::format("{:.3g}", d.difference), fmt::format("{:.3g}", d.tolerance),
+                       d.pass ? "pass" : "FAIL", d.note.empty() ? "" : "  (" + printable(d.note) + ")");
+  }
+  return out;
+}
+
+nlohmann::ordered_json to_json(const std::vector<Difference>& differences) {
+  auto out = nlohmann::ordered_json::array();
+  const auto number = [](double v) { return std::isfinite(v) ? nlohmann::ordered_json(v) : nlohmann::ordered_json(nullptr); };
+  for (const Difference& d : differences)
+    out.push_back({{"kind", d.kind}, {"name", d.name}, {"difference", number(d.difference)}, {"tolerance", number(d.tolerance)}, {"pass", d.pass}, {"note", d.note}});
+  return out;
+}
+
+}  // namespace sphgeo

@@ -1,0 +1,59 @@
+#include "deck/waves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/direction.h"
+
+namespace sphgeo {
+
+Schema<Waves> Waves::schema() {
+  Schema<Waves> s("waves", "Regular waves by a piston, from height, period and depth by linear theory.");
+  s.required("height", &Waves::height, unit::length, "from trough to crest").above(0);
+  s.required("period", &Waves::period, unit::time, "of the waves").above(0);
+  s.required("depth", &Waves::depth, unit::length, "of the water at rest").above(0);
+  s.optional("gravity", &Waves::gravity, unit::acceleration, "that the waves run under").above(0);
+  s.optional("direction", &Waves::direction, unit::none, "that the waves run in, of any length");
+  s.optional("ramp", &Waves::ramp, unit::time, "time in which the stroke grows from zero; auto: two periods").at_least(0);
+  s.check([](Waves& w, CheckContext& c) {
+    w.direction = direction_of(w.direction);
+    if (w.direction.isZero(0)) return c.error("direction", "the direction has no length", "give a vector that is not zero");
+    if (w.height >= 0.78 * w.depth)
+      c.error("height", fmt::format("waves break before they are as high as 0.78 of the depth, here {:.4g} m", 0.78 * w.depth), "a lower wave, or deeper water");
+    const double steepness = w.height * w.wave_number() / (2 * std::numbers::pi);
+    if (steepness >= 0.142 * std::tanh(w.wave_number() * w.depth))
+      c.error("height", fmt::format("waves of this period break when they are steeper than 0.142 tanh(kd); this one is {:.3g}", steepness), "a lower or a longer wave");
+  });
+  return s;
+}
+
+double Waves::wave_number() const {
+  const double omega = 2 * std::numbers::pi / period, deep = omega * omega * depth / gravity;
+  // x tanh x = deep: from Eckart's guess by Newton's steps, which converge from there for any depth.
+  double x = deep / std::sqrt(std::tanh(deep));
+  for (int k = 0; k < 50; ++k) {
+    const double t = std::tanh(x), next = x - (x * t - deep) / (t + x * (1 - t * t));
+    if (std::abs(next - x) <= 1e-14 * x) break;
+    x = next;
+  }
+  return x / depth;
+}
+
+double Waves::stroke() const {
+  const double x = 2 * wave_number() * depth;
+  // Both sides by exp(x): they overflow in deep water.
+  const double e = std::exp(-x), e2 = e * e;
+  return height * ((1 - e2) / 2 + x * e) / (2 * ((1 + e2) / 2 - e));
+}
+
+Vec3 Waves::displacement(double t) const {
+  if (t <= 0) return Vec3::Zero();
+  const double rise = ramp.value_or(2 * period);
+  const double share = t < rise ? 0.5 * (1 - std::cos(std::numbers::pi * t / rise)) : 1;
+  return 0.5 * stroke() * share * std::sin(2 * std::numbers::pi * t / period) * direction;
+}
+
+}  // namespace sphgeo

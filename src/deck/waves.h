@@ -1,0 +1,29 @@
+#pragma once
+// Regular waves by a piston that moves as linear theory says.
+
+#include <optional>
+
+#include "core/types.h"
+#include "deck/schema.h"
+
+namespace sphgeo {
+
+/// Waves of a height and a period on water of a depth (key `waves` of a motion).
+struct Waves {
+  double height = 0;                ///< H, from trough to crest, m
+  double period = 0;                ///< T, s
+  double depth = 0;                 ///< d of the water at rest, m
+  double gravity = 9.81;            ///< m/s2
+  Vec3 direction = Vec3::UnitX();   ///< that the waves run in
+  std::optional<double> ramp;       ///< in which the stroke grows from zero, s; empty: two periods
+  static Schema<Waves> schema();
+
+  /// k of omega^2 = g k tanh(k d), 1/m.
+  double wave_number() const;
+  /// S of a piston: H / S = 2 (cosh 2kd - 1) / (sinh 2kd + 2kd) (Biesel; Dean and Dalrymple 1991, section 6.3), m.
+  double stroke() const;
+  /// Of the piston at a time since its start, m.
+  Vec3 displacement(double t) const;
+};
+
+}  // namespace sphgeo

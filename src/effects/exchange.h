@@ -1,0 +1,62 @@
+#pragma once
+// How effects let particles in and out of a scene.
+
+#include <string>
+#include <vector>
+
+#include "boundaries/exchange.h"
+#include "effects/effect.h"
+
+namespace sphgeo {
+
+/// The place and velocity of a new particle.
+template <int Dim>
+struct Newcomer {
+  Vec<Dim> place, velocity;
+};
+
+/// Appends particles of water of the density at rest under `depth_pressure` [Pa] to the set, and enters them into the
+/// book of the boundary. Ids go on from the largest that there was.
+template <int Dim>
+void let_in(World<Dim>& world, ParticleSet<Dim>& water, const std::string& boundary, const std::vector<Newcomer<Dim>>& newcomers, double pressure = 0) {
+  if (newcomers.empty()) return;
+  const Index first = water.size();
+  const double density = water.constant("density"), c = water.constant("sound_speed");
+  const double mass = density * std::pow(water.spacing(), Dim);
+  double& next = world.kept("next_id/" + water.name());
+  Exchanged<Dim>& book = world.exchanged(boundary);
+  water.resize(first + static_cast<Index>(newcomers.size()));
+  for (std::size_t k = 0; k < newcomers.size(); ++k) {
+    const Index i = first + static_cast<Index>(k);
+    water.ids()[i] = static_cast<Id>(next++);
+    water.tag(fields::part)[i] = -1;  // of no body
+    water.vector(fields::position)[i] = newcomers[k].place;
+    water.vector(fields::velocity)[i] = newcomers[k].velocity;
+    water.scalar(fields::mass)[i] = mass;
+    water.scalar(fields::density)[i] = density + pressure / (c * c);
+    book.entered += 1;
+    book.add(1, mass, newcomers[k].place, newcomers[k].velocity, world.gravity());
+  }
+}
+
+/// Prepares what let_in() keeps.
+template <int Dim>
+void prepare_entry(World<Dim>& world, const ParticleSet<Dim>& water, const std::string& boundary) {
+  world.exchanged(boundary);
+  double& next = world.kept("next_id/" + water.name());
+  next = std::max(next, static_cast<double>(water.size()));
+}
+
+/// One instance of an effect for each boundary of type B, which its constructor takes; none without the sets that it needs.
+template <class B, template <int> class E, int Dim>
+Binding<Dim> bind_exchange(const World<Dim>& world, const std::string& what) {
+  Binding<Dim> binding("there is no " + what);
+  for (const auto& boundary : world.model().boundaries)
+    if (const auto* spec = dynamic_cast<const B*>(boundary.get())) {
+      binding.effects.push_back(std::make_unique<E<Dim>>(*spec));
+      binding.because = "boundary '" + spec->name + "' is " + what;
+    }
+  return binding;
+}
+
+}  // namespace sphgeo

@@ -1,0 +1,66 @@
+#include <cmath>
+
+#include "core/hash.h"
+#include "effects/exchange.h"
+
+namespace sphgeo {
+namespace {
+
+/// Water that enters in layers: one for every spacing that it has come through the inlet.
+template <int Dim>
+class InletFlow final : public Effect<Dim> {
+ public:
+  explicit InletFlow(const Inlet& inlet) : inlet_(inlet) {}
+  static EffectInfo info() { return {"inlet_flow", Stage::exchange, "5.1, 6.1", "layers of water that enter through an inlet", false}; }
+  static Binding<Dim> bind(const World<Dim>& world) { return bind_exchange<Inlet, InletFlow>(world, "an inlet"); }
+
+  std::string acts_on() const override { return "water, inlet '" + inlet_.name + "'"; }
+  Needs needs() const override {
+    return {{{"water", &fields::position, Access::update}, {"water", &fields::velocity, Access::update}, {"water", &fields::density, Access::update}}, {}};
+  }
+
+  void prepare(World<Dim>& world) override {
+    water_ = &world.set("water");
+    layer_ = inlet_.layer(water_->spacing(), Dim);
+    prepare_entry(world, *water_, inlet_.name);
+    for (const char* name : {"way", "layers", "time"}) world.kept(key(name));
+  }
+
+  void apply(World<Dim>& world) override {
+    double &way = world.kept(key("way")), &layers = world.kept(key("layers")), &last = world.kept(key("time"));
+    const double begin = std::max(last, inlet_.from), now = std::min(world.clock.time, inlet_.until.value_or(world.clock.time));
+    last = std::max(last, world.clock.time);
+    const int across = inlet_.axis(Dim);
+    const double direction = inlet_.velocity_at(inlet_.from)[across] > 0 ? 1 : -1;
+    // The middle of the interval is good to the second order; a step is a small part of what a velocity takes to change.
+    if (now > begin) way += std::max(0.0, direction * inlet_.velocity_at(0.5 * (begin + now))[across]) * (now - begin);
+    if (world.clock.time < inlet_.from || now < begin) return;
+    const Vec3 velocity = inlet_.velocity_at(now);
+    const double dp = water_->spacing(), speed = std::abs(velocity[across]);
+    std::vector<Newcomer<Dim>> newcomers;
+    // A layer enters when half of it has come through, so that what has entered is the way to half a layer.
+    for (; (layers + 0.5) * dp <= way; ++layers) {
+      const Vec3 ahead = speed > 0 ? Vec3((way - (layers + 0.5) * dp) / speed * velocity) : Vec3(Vec3::Zero());
+      for (std::size_t k = 0; k < layer_.size(); ++k) {
+        const auto number = static_cast<std::uint64_t>(layers) * layer_.size() + k;
+        if (inlet_.share < 1 && random_uniform(static_cast<std::uint64_t>(inlet_.seed), number) >= inlet_.share) continue;
+        newcomers.push_back({to_scene<Dim>(layer_[k] + ahead), to_scene<Dim>(velocity)});
+      }
+    }
+    let_in(world, *water_, inlet_.name, newcomers);
+  }
+
+  std::size_t bytes() const override { return layer_.size() * sizeof(Vec3); }
+
+ private:
+  std::string key(const std::string& name) const { return "inlet/" + inlet_.name + "/" + name; }
+
+  const Inlet& inlet_;
+  std::vector<Vec3> layer_;
+  ParticleSet<Dim>* water_ = nullptr;
+};
+
+const RegisterEffect<InletFlow> registered;
+
+}  // namespace
+}  // namespace sphgeo

@@ -1,0 +1,56 @@
+#include "core/parallel.h"
+#include "effects/exchange.h"
+
+namespace sphgeo {
+namespace {
+
+/// Particles that are taken out where they have come into an outlet.
+template <int Dim>
+class OutletFlow final : public Effect<Dim> {
+ public:
+  explicit OutletFlow(const Outlet& outlet) : outlet_(outlet) {}
+  static EffectInfo info() { return {"outlet_flow", Stage::exchange, "5.1, 6.1", "particles that leave through an outlet", false}; }
+  static Binding<Dim> bind(const World<Dim>& world) { return bind_exchange<Outlet, OutletFlow>(world, "an outlet"); }
+
+  std::string acts_on() const override { return "outlet '" + outlet_.name + "'"; }
+  Needs needs() const override { return {}; }
+
+  void prepare(World<Dim>& world) override {
+    world.exchanged(outlet_.name);
+    box_ = outlet_.shape->box();
+  }
+
+  void apply(World<Dim>& world) override {
+    Exchanged<Dim>& book = world.exchanged(outlet_.name);
+    for (const std::string& name : outlet_.sets) {
+      ParticleSet<Dim>* set = world.find(name);
+      if (set == nullptr) continue;
+      const auto& x = set->vector(fields::position);
+      const auto inside = [&](Index i) {
+        const Vec3 at = to_space<Dim>(x[i]);
+        return box_.contains(at) && outlet_.shape->signed_distance(at) < 0;
+      };
+      std::vector<char> leaves(static_cast<std::size_t>(set->size()));
+      parallel_for(set->size(), [&](Index i) { leaves[static_cast<std::size_t>(i)] = inside(i); });
+      std::vector<std::uint32_t> keep;
+      for (Index i = 0; i < set->size(); ++i) {
+        if (!leaves[static_cast<std::size_t>(i)]) {
+          keep.push_back(static_cast<std::uint32_t>(i));
+          continue;
+        }
+        book.left += 1;
+        book.add(-1, set->scalar(fields::mass)[i], x[i], set->vector(fields::velocity)[i], world.gravity());
+      }
+      if (static_cast<Index>(keep.size()) < set->size()) set->permute(keep);
+    }
+  }
+
+ private:
+  const Outlet& outlet_;
+  Aabb box_;
+};
+
+const RegisterEffect<OutletFlow> registered;
+
+}  // namespace
+}  // namespace sphgeo
