@@ -270,4 +270,30 @@ boundaries:
   }
 }
 
+TEST_CASE("a rigid body too light for the acoustic step in water: a warning with a step that would do") {
+  const auto warned = [](const std::string& density, const std::string& cfl) {
+    const Model model = read_deck_text(R"(
+dimension: 2
+resolution: 0.04
+end_time: 1
+numerics: {cfl_acoustic: )" + cfl + R"(}
+materials:
+  - {name: water, type: water, max_speed: 5}
+  - {name: foam, type: rigid, density: )" + density + R"(}
+bodies:
+  - {name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [0.8, 0.2, 0.4]}}
+  - {name: float, material: foam, shape: {type: box, min: [0.2, 0, 0.48], max: [0.4, 0.2, 0.68]}}
+)", {}, "deck", SPHGEO_SOURCE_DIR);
+    Diagnostics found;
+    const Scene<2> scene = build_scene<2>(model, found);
+    check_scene(scene, found);
+    for (const Diagnostic& d : found.items())
+      if (d.id == "W135") return d.help;
+    return std::string("silent");
+  };
+  CHECK(warned("200", "0.4") == "silent");
+  CHECK(warned("20", "0.4").find("cfl_acoustic at 0.1 or less") != std::string::npos);
+  CHECK(warned("20", "0.09") == "silent");
+}
+
 }
