@@ -270,7 +270,7 @@ boundaries:
   }
 }
 
-TEST_CASE("a rigid body too light for the acoustic step in water: a warning with a step that would do") {
+TEST_CASE("an acoustic step too long, for all or for a rigid body that is light in water: a warning with one that would do") {
   const auto warned = [](const std::string& density, const std::string& cfl) {
     const Model model = read_deck_text(R"(
 dimension: 2
@@ -288,10 +288,11 @@ bodies:
     const Scene<2> scene = build_scene<2>(model, found);
     check_scene(scene, found);
     for (const Diagnostic& d : found.items())
-      if (d.id == "W135") return d.help;
+      if (d.id == "W135" || d.id == "W136") return d.help;
     return std::string("silent");
   };
   CHECK(warned("200", "0.4") == "silent");
+  CHECK(warned("2600", "0.95") == "most hold at 0.8 or less");
   CHECK(warned("20", "0.4").find("cfl_acoustic at 0.1 or less") != std::string::npos);
   CHECK(warned("20", "0.09") == "silent");
 }
