@@ -8,7 +8,7 @@ namespace sphgeo {
 Schema<Inlet> Inlet::schema() {
   Schema<Inlet> s("inlet", "a flat rectangle that emits layers of water with a prescribed velocity, into air or along a wall: a jet, rain");
   s.required("min", &Inlet::min, unit::length, "one corner of the rectangle");
-  s.required("max", &Inlet::max, unit::length, "the opposite corner; along one axis the two are the same");
+  s.required("max", &Inlet::max, unit::length, "the opposite corner; along one axis the two are the same. The flow is that of the nearest whole number of spacings along each side");
   s.required("velocity", &Inlet::velocity, unit::speed, "velocity of the water, formulas of t").only_of("t");
   s.optional("share", &Inlet::share, unit::none, "part of the places in a layer that get a particle, chosen at random: below 1 it rains in drops").above(0).at_most(1);
   s.optional("seed", &Inlet::seed, unit::none, "another seed, other drops").at_least(0);

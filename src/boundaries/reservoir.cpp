@@ -20,7 +20,8 @@ Schema<Reservoir> Reservoir::schema() {
 std::vector<Vec3> Reservoir::places(double spacing, int dimension) const {
   const Aabb box = shape->box();
   std::vector<Vec3> places;
-  const auto count = [&](int k) { return std::max<Index>(1, std::llround((box.hi[k] - box.lo[k]) / spacing)); };
+  // Never closer than a spacing: each gets the mass of a whole one.
+  const auto count = [&](int k) { return std::max<Index>(1, static_cast<Index>(std::floor((box.hi[k] - box.lo[k]) / spacing + 1e-9))); };
   const Index nx = count(0), ny = dimension == 2 ? 1 : count(1);
   for (Index y = 0; y < ny; ++y)
     for (Index x = 0; x < nx; ++x) {

@@ -16,6 +16,7 @@
 #include "core/text.h"
 #include "scene/build.h"
 #include "scene/cross_check.h"
+#include "scene/particle_count.h"
 
 namespace sphgeo {
 namespace {
@@ -126,6 +127,8 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
     std::cout << fmt::format("  speed of sound {:.4g} m/s: {}\n", scene.sound.value, scene.sound.because);
   if (options.explain) print_plan(j);
   if (forecast) std::cout << fmt::format("{}", render_forecast(*forecast, model.resolution));
+  if (const double entering = entering_particles(model); entering > 0)
+    std::cout << fmt::format("inlets bring in about {:.3g} particles of water until the end, which the forecast does not count\n", entering);
   std::cout << fmt::format("the deck is sound\n");
   return 0;
 }

@@ -59,40 +59,38 @@ std::string run_children(std::vector<ChildRun>& runs, int jobs, const std::funct
   const auto stop_all = [&] {
     for (const auto& [pid, k] : running) ::kill(pid, SIGTERM);
   };
-  while (!running.empty() || (next < runs.size() && stopped.empty())) {
-    if (stopped.empty()) {
-      stopped = stop_reason();
-      if (!stopped.empty()) {
-        stop_all();
-        continue;
+  try {
+    while (!running.empty() || (next < runs.size() && stopped.empty())) {
+      if (stopped.empty()) {
+        stopped = stop_reason();
+        if (!stopped.empty()) stop_all();
       }
-    }
-    if (stopped.empty() && next < runs.size() && running.size() < static_cast<std::size_t>(jobs)) {
-      before(next);
-      try {
+      if (stopped.empty() && next < runs.size() && running.size() < static_cast<std::size_t>(jobs)) {
+        before(next);
         running.emplace(start(runs[next]), next);
-      } catch (...) {  // no run goes on without its study
-        stop_all();
-        for (const auto& [pid, k] : running) ::waitpid(pid, nullptr, 0);
-        throw;
-      }
-      ++next;
-      continue;
-    }
-    bool ended = false;
-    for (auto at = running.begin(); at != running.end();) {
-      int status = 0;
-      const pid_t got = ::waitpid(at->first, &status, WNOHANG);
-      if (got == 0 || (got < 0 && errno == EINTR)) {
-        ++at;
+        ++next;
         continue;
       }
-      end(runs[at->second], got < 0 ? -1 : status);
-      ready(at->second);
-      at = running.erase(at);
-      ended = true;
+      bool ended = false;
+      for (auto at = running.begin(); at != running.end();) {
+        int status = 0;
+        const pid_t got = ::waitpid(at->first, &status, WNOHANG);
+        if (got == 0 || (got < 0 && errno == EINTR)) {
+          ++at;
+          continue;
+        }
+        const std::size_t k = at->second;
+        at = running.erase(at);
+        end(runs[k], got < 0 ? -1 : status);
+        ready(k);
+        ended = true;
+      }
+      if (!ended) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    if (!ended) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  } catch (...) {  // no run goes on without its study
+    stop_all();
+    for (const auto& [pid, k] : running) ::waitpid(pid, nullptr, 0);
+    throw;
   }
   return stopped;
 }

@@ -182,6 +182,14 @@ void refuse_too_large(const Model& model) {
   const auto available = static_cast<double>(available_memory()) + static_cast<double>(resident_memory());
   // What no box bounds is found by the filling, which names the shape.
   if (!std::isfinite(total_of(counts)) && !std::isfinite(total_of(expected_particles(at_resolution(model, 1e3 * model.resolution))))) return;
+  // A particle takes some 500 bytes at least, whatever else the scene holds.
+  if (const double entering = entering_particles(model); entering > largest_set || 500 * entering > available) {
+    Diagnostics found;
+    found.error("E142", model.place_of("boundaries"), "boundaries",
+                fmt::format("inlets bring in about {:.3g} particles until the end; {:.3g} fit into the memory, and a set holds {:.3g}", entering, available / 500, largest_set),
+                "a coarser resolution, a smaller inlet, a lower share, or an earlier end");
+    throw DeckError(found);
+  }
   if (total_of(counts) * generous_bytes <= available && largest_of(counts) <= largest_set) return;
   if (model.dimension == 2) refuse<2>(model, available);
   else refuse<3>(model, available);

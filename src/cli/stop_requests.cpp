@@ -28,6 +28,9 @@ void take_signals(void (*handler)(int)) {
   action.sa_flags = SA_RESTART;  // a write that is under way is not cut short
   sigemptyset(&action.sa_mask);
   for (const int number : {SIGINT, SIGTERM}) ::sigaction(number, &action, nullptr);
+  // A terminal that is closed ends a run in order, unless nohup has said otherwise.
+  struct sigaction before {};
+  if (::sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) ::sigaction(SIGHUP, &action, nullptr);
 }
 
 }  // namespace
@@ -41,7 +44,7 @@ StopRequests::StopRequests(std::string stop_file, RunLimits limits) : stop_file_
 StopRequests::~StopRequests() { take_signals(SIG_DFL); }
 
 std::string StopRequests::reason(double wall_seconds, double reserve_seconds, std::optional<long> steps, long acoustic_steps) {
-  if (signals_seen > 0) return last_signal == SIGINT ? "interrupted (SIGINT)" : "asked to end (SIGTERM)";
+  if (signals_seen > 0) return last_signal == SIGINT ? "interrupted (SIGINT)" : last_signal == SIGHUP ? "its terminal was closed (SIGHUP)" : "asked to end (SIGTERM)";
   if (limits_.max_steps && steps && *steps >= *limits_.max_steps) return fmt::format("--max-steps {} reached", *limits_.max_steps);
   if (limits_.max_acoustic_steps && acoustic_steps >= *limits_.max_acoustic_steps)
     return fmt::format("--max-acoustic-steps {} reached", *limits_.max_acoustic_steps);

@@ -13,7 +13,7 @@ struct RunLimits {
   std::optional<long> max_acoustic_steps;  ///< the same, acoustic
 };
 
-/// Asked before every acoustic step. SIGINT and SIGTERM ask a run to finish that, keep a checkpoint and end;
+/// Asked before every acoustic step. SIGINT, SIGTERM and SIGHUP (unless it is ignored) ask a run to finish that, keep a checkpoint and end;
 /// the third signal ends the process at once.
 class StopRequests {
  public:

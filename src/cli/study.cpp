@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <sstream>
 #include <thread>
 
 #include "cli/child_runs.h"
@@ -53,6 +54,23 @@ std::string complaint_in(const std::string& log) {
   return last;
 }
 
+/// All that a run depends on but the program itself: the deck, with probes and end time, and the files that it names. A run
+/// is used again only if it would be the same.
+std::string what_decides(const Model& model) {
+  const std::string deck = resolved_yaml(model);
+  std::string all = deck;
+  std::istringstream lines(deck);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t at = line.find(": ");
+    if (at == std::string::npos) continue;
+    std::string value = line.substr(at + 2);
+    if (value.size() > 1 && (value.front() == '"' || value.front() == '\'') && value.back() == value.front()) value = value.substr(1, value.size() - 2);
+    std::error_code none;
+    if (!value.empty() && value.front() == '/' && std::filesystem::is_regular_file(value, none)) all += fmt::format("{:016x}", fnv1a(read_file(value)));
+  }
+  return all;
+}
+
 /// The command of one study.
 class StudyCommand {
  public:
@@ -74,7 +92,7 @@ class StudyCommand {
           children_[k].arguments.insert(children_[k].arguments.end(), {"--max-hours", fmt::format("{:.9f}", left)});
         },
         [&](std::size_t k) { ended(k); });
-    write();
+    write(stopped, wall());
     if (!stopped.empty() || stopped_runs_ > 0) {
       std::cerr << fmt::format("stopped: {}; the same command goes on\n", printable(stopped.empty() ? "a run was stopped" : stopped));
       return static_cast<int>(ExitCode::stopped);
@@ -112,8 +130,7 @@ class StudyCommand {
         }
         if (study_.claims.empty()) throw Error(ExitCode::usage, printable(options_.deck) + " claims nothing under 'expect': there is no result to study");
       }
-      // All of the deck counts, probes and end time too: a run is used again only if it would be the same.
-      const std::string hash = fmt::format("{:016x}", fnv1a(resolved_yaml(model))).substr(0, 8);
+      const std::string hash = fmt::format("{:016x}", fnv1a(what_decides(model))).substr(0, 8);
       std::string name = settings_text(settings);
       std::replace(name.begin(), name.end(), '=', '_');
       std::replace(name.begin(), name.end(), ' ', '-');
@@ -176,8 +193,14 @@ class StudyCommand {
     write_file_atomically(options_.folder + "/study.json", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
   }
 
-  void write() const {
+  void write(const std::string& stopped, double wall_s) const {
     write_json();
+    const bool unfinished = !stopped.empty() || stopped_runs_ > 0;
+    const nlohmann::ordered_json summary = {{"status", unfinished ? "stopped" : worst_ == 0 ? "done" : "failed"},
+                                            {"exit_code", unfinished ? static_cast<int>(ExitCode::stopped) : worst_},
+                                            {"version", study_.version}, {"title", study_.title}, {"deck", study_.deck},
+                                            {"runs", study_.runs.size()}, {"wall_s", wall_s}};
+    write_file_atomically(options_.folder + "/summary.json", summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
     write_file_atomically(options_.folder + "/study.html", study_page(study_, study_results(study_)));
     std::cout << render_study(study_, study_results(study_));
   }

@@ -116,6 +116,8 @@ RunData from_json(const Json& j) {
   }
   for (const Json& probe : j.at("probes")) {
     const std::vector<double> t = numbers(probe.at("t"));
+    if (!std::all_of(t.begin(), t.end(), [](double x) { return std::isfinite(x); }) || !std::is_sorted(t.begin(), t.end()))
+      throw std::runtime_error("the times of a probe do not rise");
     for (const auto& [column, row] : probe.at("columns").items()) {
       run.probes.push_back({probe.at("name"), column, row.at("unit"), t, numbers(row.at("values"))});
       if (run.probes.back().y.size() != t.size()) throw std::runtime_error("a probe's column has another length than its times");
@@ -124,10 +126,15 @@ RunData from_json(const Json& j) {
   for (const Json& row : j.at("sets")) {
     SetState set;
     set.set = row.at("name");
-    set.particles = row.at("particles");
+    if (!row.at("particles").is_number_unsigned()) throw std::runtime_error("the number of particles is no whole number");
+    set.particles = row.at("particles").get<Index>();
+    if (set.particles < 0 || set.particles > (Index{1} << 50)) throw std::runtime_error("the number of particles is absurd");
     const std::vector<double> x = numbers(row.at("x")), y = numbers(row.at("y")), z = numbers(row.at("z"));
     if (x.size() != y.size() || x.size() != z.size()) throw std::runtime_error("the places of a set differ in length");
-    for (std::size_t k = 0; k < x.size(); ++k) set.places.emplace_back(x[k], y[k], z[k]);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      set.places.emplace_back(x[k], y[k], z[k]);
+      if (!set.places.back().allFinite()) throw std::runtime_error("the place of a particle is no number");
+    }
     for (const auto& [name, values] : row.at("fields").items()) {
       set.fields.push_back({name, numbers(values)});
       if (set.fields.back().values.size() != x.size()) throw std::runtime_error("a field has another length than its set");

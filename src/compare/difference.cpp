@@ -158,8 +158,11 @@ class Comparison {
       for (const auto* values : {&b.second.initial, &b.second.final})
         for (const double v : *values) size.add(v);
       double worst = r.second.final.size() == b.second.final.size() ? 0 : infinite;
-      for (std::size_t k = 0; k < std::min(r.second.final.size(), b.second.final.size()); ++k)
-        worst = std::max(worst, std::abs(r.second.final[k] - b.second.final[k]));
+      for (std::size_t k = 0; k < std::min(r.second.final.size(), b.second.final.size()); ++k) {
+        const double x = r.second.final[k], y = b.second.final[k];
+        if (std::isfinite(x) != std::isfinite(y)) worst = infinite;
+        else if (std::isfinite(x)) worst = std::max(worst, std::abs(x - y));
+      }
       // Rounding of the baseline, and momentum that is zero but for rounding.
       if (worst <= 1e-6 * size.largest() || worst <= 1e-12) worst = 0;
       add("ledger", b.first, share(worst, size.largest()), fmt::format("size {:.4g}", size.largest()));
@@ -169,16 +172,17 @@ class Comparison {
   void compare_results() {
     match("result", run_.results, base_.results, [](const auto& row) { return row.first; }, [&](const auto& r, const auto& b) {
       const ResultState &now = r.second, &then = b.second;
-      if (now.value.has_value() != then.value.has_value())
-        return add("result", b.first, infinite, now.value ? "had no value" : "has no value");
-      if (!now.value) return add("result", b.first, 0, "no value in either");
+      std::string note = fmt::format("{}, was {}", now.value ? fmt::format("{:.6g}", *now.value) : "no value", then.value ? fmt::format("{:.6g}", *then.value) : "none");
+      if (now.pass != then.pass) note += now.pass ? "; passes now" : "; misses its deck's tolerance, met it before";
+      if ((then.pass && !now.pass) || now.value.has_value() != then.value.has_value()) {
+        found_.push_back({"result", b.first, infinite, tolerances_.of("result", b.first), false, note});
+        return;
+      }
+      if (!now.value) return add("result", b.first, 0, note);
       double change = std::abs(*now.value - *then.value);
       if (change <= 1e-6 * std::abs(*then.value)) change = 0;
-      std::string note = fmt::format("{:.6g}, was {:.6g}", *now.value, *then.value);
-      if (now.pass != then.pass) note += now.pass ? "; passes now" : "; failed its deck's tolerance, passed before";
       // A value near zero is small against what the deck allows it.
-      const double scale = std::max(std::abs(*then.value), then.tolerance);
-      add("result", b.first, then.pass && !now.pass ? std::max(share(change, scale), 2 * tolerances_.of("result", b.first)) : share(change, scale), note);
+      add("result", b.first, share(change, std::max(std::abs(*then.value), then.tolerance)), note);
     });
   }
 
@@ -194,6 +198,7 @@ double at_time(const ProbeCurve& curve, double time, std::size_t& from) {
   // The last row of a run that took other steps may lie a step earlier or later.
   if (time >= t.back()) return time <= t.back() + 0.02 * (t.back() - t.front()) ? curve.y.back() : std::nan("");
   if (time <= t.front()) return time >= t.front() - 0.02 * (t.back() - t.front()) ? curve.y.front() : std::nan("");
+  if (!(time > t.front() && time < t.back())) return std::nan("");  // a time that is no number
   while (from + 2 < t.size() && t[from + 1] <= time) ++from;
   const double width = t[from + 1] - t[from];
   if (!(width > 0)) return curve.y[from + 1];

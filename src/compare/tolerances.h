@@ -11,7 +11,7 @@ namespace sphgeo {
 /// A tolerance for findings by name.
 struct ToleranceRule {
   std::string name;      ///< of findings, with * for any part: "probe gauge.*"
-  double tolerance = 0;  ///< infinite: ignored
+  double tolerance = 0;  ///< 1e300: whatever it is
   static Schema<ToleranceRule> schema();
 };
 

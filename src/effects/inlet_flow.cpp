@@ -32,15 +32,17 @@ class InletFlow final : public Effect<Dim> {
     last = std::max(last, world.clock.time);
     const int across = inlet_.axis(Dim);
     const double direction = inlet_.velocity_at(inlet_.from)[across] > 0 ? 1 : -1;
-    // The middle of the interval is good to the second order; a step is a small part of what a velocity takes to change.
-    if (now > begin) way += std::max(0.0, direction * inlet_.velocity_at(0.5 * (begin + now))[across]) * (now - begin);
     if (world.clock.time < inlet_.from || now < begin) return;
-    const Vec3 velocity = inlet_.velocity_at(now);
-    const double dp = water_->spacing(), speed = std::abs(velocity[across]);
+    // The velocity at the middle of the interval is good to the second order; a step is a small part of what it takes to change.
+    const Vec3 velocity = inlet_.velocity_at(0.5 * (begin + now));
+    const double dp = water_->spacing(), speed = std::max(0.0, direction * velocity[across]);
+    way += speed * (now - begin);
     std::vector<Newcomer<Dim>> newcomers;
     // A layer enters when half of it has come through, so that what has entered is the way to half a layer.
     for (; (layers + 0.5) * dp <= way; ++layers) {
-      const Vec3 ahead = speed > 0 ? Vec3((way - (layers + 0.5) * dp) / speed * velocity) : Vec3(Vec3::Zero());
+      // Since it came through; no longer ago than the last step.
+      const double ago = speed > 0 ? std::min((way - (layers + 0.5) * dp) / speed, now - begin) : 0;
+      const Vec3 ahead = ago * velocity;
       for (std::size_t k = 0; k < layer_.size(); ++k) {
         const auto number = static_cast<std::uint64_t>(layers) * layer_.size() + k;
         if (inlet_.share < 1 && random_uniform(static_cast<std::uint64_t>(inlet_.seed), number) >= inlet_.share) continue;

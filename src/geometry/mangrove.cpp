@@ -68,7 +68,7 @@ struct Mangrove final : SceneShape {
 
   void add(const Vec3& a, const Vec3& b, double radius) { pieces_.push_back({a, b, 0.5 * (a + b), radius, 0.5 * (b - a).norm() + radius}); }
 
-  /// A parabola from `start` that leaves with a slope of one fifth upwards per unit of its span and ends at `end`.
+  /// A parabola from `start` that leaves with a fifth of its mean slope, bends down and ends at `end`.
   void arch(const Vec3& start, const Vec3& end, double radius, double tip) {
     Vec3 last = start;
     for (int k = 1; k <= segments; ++k) {

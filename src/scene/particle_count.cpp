@@ -1,6 +1,7 @@
 #include "scene/particle_count.h"
 
 #include "boundaries/boundary.h"
+#include "boundaries/exchange.h"
 #include "geometry/fill.h"
 #include "materials/solid.h"
 #include "relax/pore_water.h"
@@ -38,6 +39,14 @@ ParticleCounts expected_particles(const Model& model) {
   for (const auto& b : model.boundaries)
     if (const auto* wall = dynamic_cast<const WallBoundary*>(b.get())) add(counts, "walls", wall->expected_points(placement));
   return counts;
+}
+
+double entering_particles(const Model& model) {
+  double sum = 0;
+  for (const auto& b : model.boundaries)
+    if (const auto* border = dynamic_cast<const ExchangeBoundary*>(b.get()))
+      sum += border->expected_particles(model.resolution, model.dimension, 0, model.end_time).value_or(0);
+  return sum;
 }
 
 double count_of(const ParticleCounts& counts, const std::string& set) {

@@ -16,6 +16,9 @@ using ParticleCounts = std::vector<std::pair<std::string, double>>;
 /// few percent, and quick at any resolution. Infinite when a shape has no bounds.
 ParticleCounts expected_particles(const Model& model);
 
+/// Particles of water that inlets bring in until the end. What reservoirs add is not known before.
+double entering_particles(const Model& model);
+
 /// Of that set, 0 when there is none.
 double count_of(const ParticleCounts& counts, const std::string& set);
 double total_of(const ParticleCounts& counts);

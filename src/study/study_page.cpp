@@ -37,7 +37,7 @@ std::string diagram(Curves curves, const StudyClaim& claim) {
       curve.x.push_back(r.runs[k]->record.wall_s);
       curve.y.push_back(r.errors[k] ? unit * *r.errors[k] : std::nan(""));
       curve.labels.push_back(setting_of(*r.runs[k], r.curve->key));
-      if (r.worth[k]) front.emplace_back(curve.x.back(), curve.y.back());
+      if (r.worth[k] && (curves.size() == 1 || r.error_against == "the reference")) front.emplace_back(curve.x.back(), curve.y.back());
     }
     chart.curves.push_back(std::move(curve));
   }

@@ -80,6 +80,20 @@ TEST_CASE("what is no baseline, or a damaged one, is refused with its path") {
     CAPTURE(text);
     CHECK(refused(text));
   }
+  // Sound JSON whose numbers make no sense.
+  write_baseline(path, long_run(), {4, 2});
+  std::ifstream file(path);
+  const std::string sound((std::istreambuf_iterator<char>(file)), {});
+  const auto with = [&](const std::string& a, const std::string& b) {
+    std::string text = sound;
+    const std::size_t at = text.find(a);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, a.size(), b);
+  };
+  CHECK(refused(with("\"particles\":1000", "\"particles\":1e300")));
+  CHECK(refused(with("\"particles\":1000", "\"particles\":-1")));
+  CHECK(refused(with("\"t\":[0.0", "\"t\":[null")));
+  CHECK(refused(with("\"x\":[", "\"x\":[null,")));
   CHECK_THROWS_AS(read_run_data(folder.path()), Error);
 }
 

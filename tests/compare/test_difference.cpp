@@ -122,6 +122,19 @@ TEST_CASE("lost particles, another end, another ledger and a result that now fai
   CHECK(find(all, "ledger mass").difference == doctest::Approx(0.02));
 }
 
+TEST_CASE("a result that met its tolerance and misses it now fails whatever the tolerances, and so does a ledger that is no number") {
+  const Tolerances wide{1e9, 1e9, 1e9, 1e9, 0, 1e9, 1e9, {{"*", 1e300}}};
+  RunData run = some_run();
+  run.results[0].second.pass = false;
+  CHECK_FALSE(find(compare_runs(run, some_run(), wide), "result depth").pass);
+  run = some_run();
+  run.results[0].second.value.reset();
+  CHECK_FALSE(find(compare_runs(run, some_run(), wide), "result depth").pass);
+  run = some_run();
+  run.ledger[0].second.final = {std::nan("")};
+  CHECK_FALSE(find(compare_runs(run, some_run(), {}), "ledger mass").pass);
+}
+
 TEST_CASE("what the run lacks fails, what it has more is told") {
   RunData run = some_run(), base = some_run();
   run.probes[0].probe = "other";

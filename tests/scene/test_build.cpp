@@ -109,9 +109,9 @@ TEST_SUITE("scene") {
   }
 
   TEST_CASE("an effect is switched off with a warning, an unknown one or one that is needed not at all") {
-    CHECK(findings(pool + tank + "without: [drag]\n") == std::multiset<std::string>{"W136"});
-    CHECK(findings(pool + tank + "without: [water_momentum]\n") == std::multiset<std::string>{"E135"});
-    CHECK(findings(pool + tank + "without: [drga]\n") == std::multiset<std::string>{"E135"});
+    CHECK(findings(pool + tank + "without: [drag]\n") == std::multiset<std::string>{"W140"});
+    CHECK(findings(pool + tank + "without: [water_momentum]\n") == std::multiset<std::string>{"E141"});
+    CHECK(findings(pool + tank + "without: [drga]\n") == std::multiset<std::string>{"E141"});
   }
 
   TEST_CASE("a sound scene has no findings") {
@@ -274,6 +274,33 @@ boundaries:
     }
     CHECK(warned == oblique);
   }
+}
+
+TEST_CASE("an acoustic step too long, for all or for a rigid body that is light in water: a warning with one that would do") {
+  const auto warned = [](const std::string& density, const std::string& cfl) {
+    const Model model = read_deck_text(R"(
+dimension: 2
+resolution: 0.04
+end_time: 1
+numerics: {cfl_acoustic: )" + cfl + R"(}
+materials:
+  - {name: water, type: water, max_speed: 5}
+  - {name: foam, type: rigid, density: )" + density + R"(}
+bodies:
+  - {name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [0.8, 0.2, 0.4]}}
+  - {name: float, material: foam, shape: {type: box, min: [0.2, 0, 0.48], max: [0.4, 0.2, 0.68]}}
+)", {}, "deck", SPHGEO_SOURCE_DIR);
+    Diagnostics found;
+    const Scene<2> scene = build_scene<2>(model, found);
+    check_scene(scene, found);
+    for (const Diagnostic& d : found.items())
+      if (d.id == "W135" || d.id == "W136") return d.help;
+    return std::string("silent");
+  };
+  CHECK(warned("200", "0.4") == "silent");
+  CHECK(warned("2600", "0.95") == "most hold at 0.8 or less");
+  CHECK(warned("20", "0.4").find("cfl_acoustic at 0.1 or less") != std::string::npos);
+  CHECK(warned("20", "0.09") == "silent");
 }
 
 }
