@@ -1,6 +1,7 @@
 """The page stability.md: tables of decks and of sweeps."""
 import datetime
 import math
+import re
 import subprocess
 from pathlib import Path
 
@@ -105,7 +106,8 @@ def sweeps(results, plan):
     for name, points in results.items():
         sweep = plan["sweeps"][name]
         text += [f"### {sweep['title']}", "", f"`{sweep['deck']}`" + (f" with {', '.join(f'`{o}`' for o in sweep['options'])}" if sweep.get("options") else "") +
-                 f", `{sweep['key']}`" + (f". {sweep['note']}" if sweep.get("note") else "") + "", ""]
+                 f", `{sweep['key']}`" +
+                 (f". Not judged: {', '.join(f'`{c}`' for c in sweep['skip'])}, as {sweep['because']}" if sweep.get("skip") else "") + ".", ""]
         text += ["| " + sweep["quantity"] + " | " + " | ".join(str(p["value"]) for p in points) + " |", "|---" * (len(points) + 1) + "|",
                  "| worst claim | " + " | ".join(cell([p]) for p in points) + " |", ""]
         wrong = [f"- {p['value']}: {w}" for p in points for w in p["wrong"]]
@@ -123,6 +125,7 @@ def write(page, section, text):
                 current = line[3:]
             elif current:
                 parts[current] += line + "\n"
-    parts[section] = text
+    # Places in decks are told from the project's folder or that of the runs.
+    parts[section] = re.sub(r"/[^\s(`]*/(?=\w+/(?:turned|mirrored)\.yaml)", "", text.replace(f"{ROOT}/", ""))
     body = "\n".join(f"## {name}\n\n{parts[name].strip()}\n" for name in parts if parts[name].strip())
     page.write_text(PREFACE + "\n" + body, encoding="utf-8")
