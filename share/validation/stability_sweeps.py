@@ -22,7 +22,6 @@ def run(options, plan, runner, judge, quiet):
         text = done["folder"] / "resolved.yaml"
         resolved = turn_deck.load(text) if text.is_file() else {"probes": [], "expect": []}
         result = {"value": f"{value:g}", **judge(resolved, done, None, sweep.get("skip", []))}
-        result["version"] = done.get("version")
         worst = max(result["claims"].items(), key=lambda c: c[1], default=("", 0))
         print(f"{name} {value:g}: {'; '.join(result['wrong']) or f'{worst[0]} {100 * worst[1]:.2g} %'}", file=sys.stderr, flush=True)
         return name, result

@@ -1,6 +1,7 @@
 """The page stability.md: tables of decks and of sweeps."""
 import datetime
 import math
+import re
 import subprocess
 from pathlib import Path
 
@@ -21,10 +22,10 @@ def processor():
     return "unknown processor"
 
 
-def measured(command, versions):
-    commit = subprocess.run(["git", "-C", str(ROOT), "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False).stdout.strip()
-    return (f"Measured on {datetime.date.today()}, {processor()}, one thread a run, commit {commit or 'unknown'}, "
-            f"version {', '.join(sorted(v for v in versions if v)) or 'unknown'}: `{command}`.")
+def measured(command, sphgeo):
+    said = subprocess.run([str(sphgeo), "--version"], capture_output=True, text=True, check=False).stdout
+    commit = next((line.split()[1] for line in said.splitlines() if line.startswith("commit ")), "unknown")
+    return f"Measured on {datetime.date.today()}, {processor()}, one thread a run, program of commit {commit}: `{command}`."
 
 
 def percent(margin):
@@ -74,9 +75,8 @@ def decks(results, plan, options):
                 left.setdefault((name, claim, why), []).append(v["group"])
         rows.append(f"| `{name}` | " + " | ".join(cells) + f" | {mach:.2g} |")
     bad = sum(1 for vs in results.values() for v in vs.values() if v.get("wrong"))
-    versions = {v.get("version") for vs in results.values() for v in vs.values()}
     command = "share/validation/stability" + (" --full" if options.full else "")
-    text = [measured(command, versions), ""]
+    text = [measured(command, options.sphgeo), ""]
     text += [f"{len(results)} decks, {runs} runs, {judged} claims judged: {runs - bad} runs hold, {bad} do not.", ""]
     text += ["The number is the share of what is allowed that the worst claim takes up: 3 % is far from breaking, more than 100 % is missed.",
              "A claim of how close a value stays to a reference counts its error against the tolerance; one of a bound counts how far the value",
@@ -98,14 +98,14 @@ def decks(results, plan, options):
     return "\n".join(text), bad
 
 
-def sweeps(results, plan):
-    versions = {p.get("version") for points in results.values() for p in points}
-    text = [measured("share/validation/stability --sweeps", versions), "",
+def sweeps(results, plan, options):
+    text = [measured("share/validation/stability --sweeps", options.sphgeo), "",
             "One number of a deck is varied. Margins as above; the worst claim of each run.", ""]
     for name, points in results.items():
         sweep = plan["sweeps"][name]
         text += [f"### {sweep['title']}", "", f"`{sweep['deck']}`" + (f" with {', '.join(f'`{o}`' for o in sweep['options'])}" if sweep.get("options") else "") +
-                 f", `{sweep['key']}`" + (f". {sweep['note']}" if sweep.get("note") else "") + "", ""]
+                 f", `{sweep['key']}`" +
+                 (f". Not judged: {', '.join(f'`{c}`' for c in sweep['skip'])}, as {sweep['because']}" if sweep.get("skip") else "") + ".", ""]
         text += ["| " + sweep["quantity"] + " | " + " | ".join(str(p["value"]) for p in points) + " |", "|---" * (len(points) + 1) + "|",
                  "| worst claim | " + " | ".join(cell([p]) for p in points) + " |", ""]
         wrong = [f"- {p['value']}: {w}" for p in points for w in p["wrong"]]
@@ -123,6 +123,7 @@ def write(page, section, text):
                 current = line[3:]
             elif current:
                 parts[current] += line + "\n"
-    parts[section] = text
+    # Places in decks are told from the project's folder or that of the runs.
+    parts[section] = re.sub(r"/[^\s(`]*/(?=\w+/(?:turned|mirrored)\.yaml)", "", text.replace(f"{ROOT}/", ""))
     body = "\n".join(f"## {name}\n\n{parts[name].strip()}\n" for name in parts if parts[name].strip())
     page.write_text(PREFACE + "\n" + body, encoding="utf-8")
