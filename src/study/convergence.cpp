@@ -33,9 +33,11 @@ bool same(double a, double b) { return std::abs(a - b) <= 1e-12 * std::max(std::
 }  // namespace
 
 std::optional<double> order_of_errors(std::span<const Level> levels) {
-  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, largest = 0;
+  for (const Level& level : levels) largest = std::max(largest, level.error.value_or(0));
   for (const Level& level : levels) {
-    if (!level.error || !(*level.error > 0)) continue;
+    // What is a millionth of another error is rounding, or luck, and has no order.
+    if (!level.error || !(*level.error > 1e-6 * largest)) continue;
     const double x = std::log(level.spacing), y = std::log(*level.error);
     n += 1;
     sx += x;

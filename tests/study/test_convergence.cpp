@@ -7,6 +7,7 @@
 
 using sphgeo::convergence;
 using sphgeo::Level;
+using sphgeo::order_of_errors;
 
 TEST_SUITE_BEGIN("study");
 
@@ -73,6 +74,13 @@ TEST_CASE("two levels have the order of their errors and a threefold safety") {
   CHECK(*found.order == doctest::Approx(1));
   CHECK(*found.uncertainty == doctest::Approx(0.03));
   CHECK_FALSE(convergence(std::vector<Level>{{0.01, 1, 0.1}}).order);
+}
+
+TEST_CASE("an error of rounding takes no part in the order") {
+  const std::vector<Level> exact = {{0.04, 1, 1e-15}, {0.02, 1, 2e-15}, {0.01, 1.001, 1e-3}};
+  CHECK_FALSE(order_of_errors(exact));
+  const std::vector<Level> mixed = {{0.04, 1, 0.04}, {0.02, 1, 0.02}, {0.01, 1.0, 1e-12}};
+  CHECK(*order_of_errors(mixed) == doctest::Approx(1));
 }
 
 TEST_CASE("values equal to rounding are unchanged") {
