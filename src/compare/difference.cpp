@@ -202,8 +202,11 @@ double at_time(const ProbeCurve& curve, double time, std::size_t& from) {
   while (from + 2 < t.size() && t[from + 1] <= time) ++from;
   const double width = t[from + 1] - t[from];
   if (!(width > 0)) return curve.y[from + 1];
+  // Baselines hold times to seven digits: what is that near to a row means the row, also beside a gap.
+  const double digits = 1e-6 * std::max(std::abs(t.front()), std::abs(t.back()));
+  if (time - t[from] <= digits) return curve.y[from];
+  if (t[from + 1] - time <= digits) return curve.y[from + 1];
   const double w = (time - t[from]) / width;
-  if (w == 0) return curve.y[from];
   return curve.y[from] + w * (curve.y[from + 1] - curve.y[from]);
 }
 
