@@ -22,6 +22,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "support"))
+from decks import affordable  # noqa: E402
 from run_folder import differing, results  # noqa: E402
 
 DONE, STOPPED = 0, 6
@@ -107,7 +108,7 @@ def main():
     args = parser.parse_intermixed_args()
     if args.set and not args.decks:
         parser.error("--set needs the decks that it is for")
-    found = sorted(p.relative_to(ROOT).as_posix() for p in (ROOT / "decks").rglob("*.yaml"))
+    found = affordable()
     decks = [Path(d).resolve().relative_to(ROOT).as_posix() for d in args.decks] or found
     unknown = [d for d in [*SETTINGS, *(deck for deck, _ in ALSO)] if d not in found]
     for deck in unknown:

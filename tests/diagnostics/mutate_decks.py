@@ -16,6 +16,9 @@ from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
+from decks import affordable  # noqa: E402
+
 try:
     from deck_mistakes import mistakes
 except ImportError as absent:
@@ -71,7 +74,7 @@ def main():
     arguments.add_argument("decks", nargs="*", type=Path)
     given = arguments.parse_args()
     sphgeo = str(Path(given.sphgeo).resolve())
-    decks = given.decks or sorted((ROOT / "decks").rglob("*.yaml"))
+    decks = given.decks or [ROOT / deck for deck in affordable()]
     schema = json.loads(subprocess.run([sphgeo, "schema"], capture_output=True, check=True).stdout)
 
     tally, bad, clean = Counter(), [], 0
