@@ -32,6 +32,22 @@ struct Span {
 /// What is smaller than this share of its companions is noise about zero.
 constexpr double least_share = 0.01;
 
+/// Sums the differences of pairs of values; a pair of which only one is a number is counted apart.
+struct Mismatch {
+  double squares = 0, used = 0, unlike = 0;
+  void add(double x, double y) {
+    if (std::isfinite(x) != std::isfinite(y)) unlike += 1;
+    if (!std::isfinite(x) || !std::isfinite(y)) return;
+    squares += (x - y) * (x - y);
+    used += 1;
+  }
+  /// The root mean square; zero where it is what the seven digits of baselines leave out of values of this size.
+  double rms(double largest) const {
+    const double value = used > 0 ? std::sqrt(squares / used) : 0;
+    return value <= 1e-6 * largest ? 0 : value;
+  }
+};
+
 std::string vector_of(const std::string& field) { return field.substr(0, field.find('.')); }
 
 Span span_of(const std::vector<double>& values) {
@@ -135,20 +151,11 @@ class Comparison {
       double scale = range.size();
       for (const FieldState& other : b.fields)
         if (vector_of(other.name) == vector_of(fb.name)) scale = std::max(scale, least_share * span_of(other.values).size());
-      double squares = 0, used = 0, unlike = 0;
-      for (std::size_t k = 0; k < sample.size(); ++k) {
-        const double x = fr.values[nearest[k]], y = fb.values[sample[k]];
-        if (std::isfinite(x) != std::isfinite(y)) unlike += 1;
-        if (!std::isfinite(x) || !std::isfinite(y)) continue;
-        squares += (x - y) * (x - y);
-        used += 1;
-      }
-      double rms = used > 0 ? std::sqrt(squares / used) : 0;
-      // Baselines hold seven digits.
-      if (rms <= 1e-6 * range.largest()) rms = 0;
+      Mismatch m;
+      for (std::size_t k = 0; k < sample.size(); ++k) m.add(fr.values[nearest[k]], fb.values[sample[k]]);
       std::string note = fmt::format("range {:.4g}", range.size());
-      if (unlike > 0) note += fmt::format("; {:.0f} particles have a value in only one", unlike);
-      add("field", b.set + "." + fb.name, std::max(share(rms, scale), unlike / static_cast<double>(sample.size())), note);
+      if (m.unlike > 0) note += fmt::format("; {:.0f} particles have a value in only one", m.unlike);
+      add("field", b.set + "." + fb.name, std::max(share(m.rms(range.largest()), scale), m.unlike / static_cast<double>(sample.size())), note);
     });
   }
 
@@ -214,20 +221,14 @@ double at_time(const ProbeCurve& curve, double time, std::size_t& from) {
 
 CurveDistance curve_distance(const ProbeCurve& run, const ProbeCurve& baseline) {
   Span range;
-  double squares = 0, used = 0, unlike = 0;
+  Mismatch m;
   std::size_t from = 0;
   for (std::size_t k = 0; k < baseline.t.size(); ++k) {
-    const double y = baseline.y[k], x = at_time(run, baseline.t[k], from);
-    range.add(y);
-    if (std::isfinite(x) != std::isfinite(y)) unlike += 1;
-    if (!std::isfinite(x) || !std::isfinite(y)) continue;
-    squares += (x - y) * (x - y);
-    used += 1;
+    range.add(baseline.y[k]);
+    m.add(at_time(run, baseline.t[k], from), baseline.y[k]);
   }
-  double rms = used > 0 ? std::sqrt(squares / used) : 0;
-  if (rms <= 1e-6 * range.largest()) rms = 0;
   const double n = static_cast<double>(std::max<std::size_t>(1, baseline.t.size()));
-  return {rms, range.size(), unlike / n};
+  return {m.rms(range.largest()), range.size(), m.unlike / n};
 }
 
 std::vector<std::size_t> nearest_places(const std::vector<Vec3>& places, const std::vector<Vec3>& among) {
