@@ -224,6 +224,14 @@ int main(int argc, char** argv) {
   relax_app->add_flag("-q,--quiet", relax.quiet, "say nothing but results");
   relax_app->callback([&] { code = run_guarded([&] { return relax_command(relax); }); });
 
+  ExportOptions exported;
+  CLI::App* export_app = app.add_subcommand("export", "write the surface of a body or a wall as STL");
+  add_deck(export_app, exported.deck, exported.set);
+  export_app->add_option("name", exported.name, "the body or the wall")->required()->type_name("NAME");
+  export_app->add_option("-o,--output", exported.output, "the file")->required()->type_name("FILE");
+  export_app->add_option("--spacing", exported.spacing, "of the grid that finds the surface, m (default: half the resolution)")->type_name("S");
+  export_app->callback([&] { code = run_guarded([&] { return export_command(exported); }); });
+
   StudyOptions study;
   CLI::App* study_app = app.add_subcommand("study", "run a deck with different settings: what accuracy costs in time");
   add_deck(study_app, study.deck, study.set);

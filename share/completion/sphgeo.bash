@@ -3,7 +3,7 @@
 
 _sphgeo() {
   local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} command=${COMP_WORDS[1]}
-  local commands="run check relax study compare report list show reference schema bench"
+  local commands="run check relax export study compare report list show reference schema bench"
   local options=""
   COMPREPLY=()
 
@@ -15,6 +15,7 @@ _sphgeo() {
     run) options="--help -h --set --output -o --threads --overwrite --resume --max-hours --max-steps --max-acoustic-steps --verify --no-report --quiet -q" ;;
     check) options="--help -h --set --explain --json --preview --no-calibrate --threads" ;;
     relax) options="--help -h --set --output -o --threads --overwrite --verify --quiet -q" ;;
+    export) options="--help -h --set --output -o --spacing" ;;
     study) options="--help -h --set --vary --combine --output -o --jobs --threads --max-hours --quiet -q" ;;
     compare) options="--help -h --tolerances --update --json --all" ;;
     bench) options="--help -h --effects --json --scene --size --precision --seconds --repeats" ;;
@@ -25,7 +26,8 @@ _sphgeo() {
 
   case $before in
     -o | --output)
-      if [[ $command == report ]]; then mapfile -t COMPREPLY < <(compgen -f -X '!*.html' -- "$word"; compgen -d -- "$word")
+      if [[ $command == export ]]; then mapfile -t COMPREPLY < <(compgen -f -X '!*.stl' -- "$word"; compgen -d -- "$word")
+      elif [[ $command == report ]]; then mapfile -t COMPREPLY < <(compgen -f -X '!*.html' -- "$word"; compgen -d -- "$word")
       else mapfile -t COMPREPLY < <(compgen -d -- "$word"); fi
       return ;;
     --preview)
@@ -40,7 +42,7 @@ _sphgeo() {
     --tolerances)
       mapfile -t COMPREPLY < <(compgen -f -- "$word")
       return ;;
-    --set | --vary | --jobs | --threads | --max-hours | --max-steps | --max-acoustic-steps | --size | --seconds | --repeats)
+    --set | --spacing | --vary | --jobs | --threads | --max-hours | --max-steps | --max-acoustic-steps | --size | --seconds | --repeats)
       return ;;
   esac
 
@@ -50,7 +52,7 @@ _sphgeo() {
     mapfile -t COMPREPLY < <(compgen -W "$("${COMP_WORDS[0]}" list 2>/dev/null | sed -n 's/^  \([^ ]*\) .*/\1/p')" -- "$word")
   elif [[ $command == report ]]; then
     mapfile -t COMPREPLY < <(compgen -d -- "$word")
-  elif [[ $command == run || $command == check || $command == relax || $command == study ]]; then
+  elif [[ $command == run || $command == check || $command == relax || $command == export || $command == study ]]; then
     # Decks, and folders on the way to them.
     mapfile -t COMPREPLY < <(compgen -f -X '!*.yaml' -- "$word"; compgen -d -S / -- "$word")
     compopt -o nospace 2>/dev/null

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "deck/around.h"
 #include "deck/copies.h"
 #include "deck/motion.h"
 #include "deck/model.h"
@@ -103,6 +104,7 @@ std::vector<CatalogGroup> catalog() {
   // Taken in before bodies are read, and so no key that they declare.
   CatalogEntry body = section<Body>();
   body.keys.push_back({"copies", "makes many bodies of this one", "", "a mapping of the keys of 'copies'", "none"});
+  body.keys.push_back({"around", around_sentence, "", "a list of names of bodies", "none"});
   return {{"section", "deck sections", "The keys of the deck and of the mappings in it.",
            {section<Model>(), body, section<Copies>(), section<Motion>(), section<Waves>(), section<Output>(), section<Frames>(), section<Numerics>(), section<Relaxation>(), section<Expect>()}},
           types(Registry<MaterialSpec>::get(), "materials", "What bodies are made of: entries of `materials`."),

@@ -128,7 +128,7 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
   if (options.explain) print_plan(j);
   if (forecast) std::cout << fmt::format("{}", render_forecast(*forecast, model.resolution));
   if (const double entering = entering_particles(model); entering > 0)
-    std::cout << fmt::format("inlets bring in about {:.3g} particles of water until the end, which the forecast does not count\n", entering);
+    std::cout << fmt::format("inlets bring in about {:.3g} particles of water until the end: the forecast takes all of them for the memory, half of them for the time\n", entering);
   std::cout << fmt::format("the deck is sound\n");
   return 0;
 }

@@ -53,6 +53,16 @@ struct RelaxOptions {
 /// Relaxes the water in soil and stores it. Throws Error (usage) when the deck has none.
 int relax_command(const RelaxOptions& options);
 
+struct ExportOptions {
+  std::string deck;
+  std::string name;                ///< of a body or a wall
+  std::string output;              ///< an STL file
+  std::vector<std::string> set;
+  std::optional<double> spacing;   ///< of the grid that finds the surface, m; empty: half the resolution
+};
+/// Writes the surface of a body or a wall as binary STL. Throws Error (usage), DeckError, IoError.
+int export_command(const ExportOptions& options);
+
 struct StudyOptions {
   std::string deck;
   std::string folder;

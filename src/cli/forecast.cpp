@@ -206,18 +206,25 @@ RunFigures ForecastBasis::figures(double coarser, const ParticleCounts& at, int 
   const double larger = ratio(fluid(at), fluid(counts_)), walls = ratio(count_of(at, "walls"), count_of(counts_, "walls"));
   RunFigures r;
   for (const auto& [set, n] : at) r.particles.emplace_back(set, whole(n));
-  r.memory_bytes = static_cast<std::uint64_t>(base_ + bytes_at(shares_, counts_, at) + output_.series_bytes + checkpoint_library +
-                                              std::max(output_.buffer_bytes, output_.checkpoint_bytes) * larger);
+  // What inlets bring in takes memory at the end, and half of it time on the average: outlets are not known before.
+  const double entering = entering_particles(at_resolution(model_, coarser * model_.resolution));
+  r.entering = whole(entering);
+  const double at_end = 1 + entering / std::max(1.0, fluid(at)), on_average = 0.5 * (1 + at_end);
+  ParticleCounts end = at;
+  for (auto& [set, n] : end)
+    if (set == "water") n += entering;
+  r.memory_bytes = static_cast<std::uint64_t>(base_ + bytes_at(shares_, counts_, end) + output_.series_bytes + checkpoint_library +
+                                              std::max(output_.buffer_bytes, output_.checkpoint_bytes) * larger * at_end);
   r.advection_steps = whole(std::ceil(steps_.advection / coarser));
   r.acoustic_steps = whole(std::ceil(steps_.acoustic / coarser));
   if (costs) {
     const double stepping = costs->step.of({steps_.advection / coarser, steps_.acoustic / coarser}) * threads() / with_threads;
-    r.wall_s = (costs->start + stepping + output_.observations * costs->observation + output_.frames * costs->frame) * larger;
+    r.wall_s = (costs->start + (stepping + output_.observations * costs->observation + output_.frames * costs->frame) * on_average) * larger;
   }
   // The last checkpoint and the one before it.
   const double checkpoints = r.wall_s && *r.wall_s > model_.output.checkpoint_every ? 2 : 1;
-  r.disk_bytes = static_cast<std::uint64_t>(fixed_files + output_.samples_bytes + output_.frames * (output_.frame_heads + (output_.frame_bytes - output_.frame_heads) * larger + 2 * entry_bytes) +
-                                            output_.walls_bytes * walls + checkpoints * (checkpoint_fixed + output_.checkpoint_bytes * larger));
+  r.disk_bytes = static_cast<std::uint64_t>(fixed_files + output_.samples_bytes + output_.frames * (output_.frame_heads + (output_.frame_bytes - output_.frame_heads) * larger * on_average + 2 * entry_bytes) +
+                                            output_.walls_bytes * walls + checkpoints * (checkpoint_fixed + output_.checkpoint_bytes * larger * at_end));
   return r;
 }
 

@@ -15,6 +15,7 @@ Schema<ClampedRegion> ClampedRegion::schema() {
 Schema<Body> Body::schema() {
   Schema<Body> s("body", "A region filled with particles of one material at t = 0; with `copies`, many of them.");
   s.taken_before("copies");
+  s.taken_before("around");
   s.required("name", &Body::name, unit::none, "the name of its particles and files");
   s.required("material", &Body::material, unit::none, "the name of an entry of 'materials'");
   s.required("shape", &Body::shape, unit::none, "the region it fills");

@@ -12,6 +12,7 @@
 
 #include "core/hash.h"
 #include "core/text.h"
+#include "deck/around.h"
 #include "deck/copies.h"
 #include "deck/model.h"
 #include "deck/yaml_reader.h"
@@ -208,11 +209,12 @@ Json json_schema() {
   Json definitions = Json::object();
   Model defaults;
   json_mapping(out, {{&schema_of<Model>(), &defaults}}, definitions);
-  // `copies` is taken in before bodies are read, and no key of theirs.
+  // `copies` and `around` are taken in before bodies are read, and no keys of theirs.
   Copies copies;
   Json& many = out["properties"]["bodies"]["items"]["properties"]["copies"];
   json_mapping(many, {{&schema_of<Copies>(), &copies}}, definitions);
   many["description"] = schema_of<Copies>().sentence();
+  out["properties"]["bodies"]["items"]["properties"]["around"] = {{"type", "array"}, {"items", {{"type", "string"}}}, {"description", around_sentence}};
   out["definitions"] = std::move(definitions);
   return out;
 }

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "deck/around.h"
 #include "deck/copies.h"
 #include "deck/deck_file.h"
 #include "deck/model.h"
@@ -78,6 +79,7 @@ Model read(const DeckText& deck, const std::vector<std::string>& overrides) {
   // A resolution that cannot be read is an error of its own: NaN keeps formulas that use it silent.
   reading.variables.values.emplace_back("resolution", reading.resolution > 0 ? reading.resolution : std::nan(""));
   expand_copies(*root, reading);
+  expand_around(*root, reading);
   read_mapping(*root, {{&schema_of<Model>(), &model}}, {}, reading);
   if (found.has_errors()) throw DeckError(std::move(found));
 

@@ -27,7 +27,7 @@ template <int Dim>
 struct SoilWallPair {
   Kernel<Dim> kernel;
   double limiter;  ///< xi^s
-  double near;     ///< distance below which a particle of the wall is too close, m
+  double near;     ///< distance below which a particle of a wall is too close, m
   double per_spacing;  ///< 1 / dp
   double per_step;     ///< 1 / dt
 
@@ -64,7 +64,9 @@ struct SoilWallPair {
     // particle that comes too near to one of the wall meets the bulk modulus, along the line between them, so that it is as
     // right beside a rim or an edge as over a plane. In a square of four it comes down to the level of the surface.
     const T bulk = soil[slot::impedance<Dim>] * soil[slot::impedance<Dim>] / max(T(1e-30), soil[slot::density<Dim>]);
-    const T contact = bulk * (T(per_spacing) * max(T(0), T(near) * (T(0.7) + T(0.3) * face) - length(r2)));
+    // Solids may be finer or coarser than the soil: the mean of both.
+    const T apart = T(near) + T(0.5) * wall[wall_slot::yields] * (wall[wall_slot::near] - T(near));
+    const T contact = bulk * (T(per_spacing) * max(T(0), apart * (T(0.7) + T(0.3) * face) - length(r2)));
     const T height = face * max(T(0), r_n);
     const T rise = soil[slot::borne<Dim>] * soil[slot::density<Dim>] * wall[wall_slot::push] * height;
     T tensor[Dim * Dim];

@@ -59,6 +59,9 @@ inline constexpr int pull = 8;      ///< g - dv/dt of the last step; in the seco
 inline constexpr int density = 12;  ///< rho; in the second record
 }  // namespace water_slot
 
+/// Value of the field `surface` where less than half the neighborhood of a particle is filled.
+inline constexpr std::int32_t spray = 2;
+
 /// Low-dissipation Riemann flux of the water, between equal materials (Eqs. 61-63).
 struct RiemannFlux {
   double impedance;      ///< rho0 c0

@@ -29,6 +29,7 @@ class WaterPredict final : public Effect<Dim> {
              {"water", &fields::density_rate, Access::read},
              {"water", &fields::velocity, Access::read},
              {"water", &fields::mass, Access::read},
+             {"water", &fields::surface, Access::read},
              {"water", &fields::pressure, Access::write},
              {"water", &fields::volume, Access::write}},
             {}};
@@ -51,6 +52,7 @@ class WaterPredict final : public Effect<Dim> {
     const auto& rate = water_->scalar(fields::density_rate);
     const auto& v = water_->vector(fields::velocity);
     const auto& m = water_->scalar(fields::mass);
+    const auto& surface = water_->tag(fields::surface);
     const Field<double>* share = volume_share(world);
     const Field<double>* scale = gradient_scale(world);
     const bool repack = !world.frozen_geometry();
@@ -61,6 +63,9 @@ class WaterPredict final : public Effect<Dim> {
         rho[i] += half * rate[i];
         x[i] += half * v[i];
         p[i] = c2 * (rho[i] - w.density);
+        // Drops that part bear no tension: it would hold a particle back over the whole advection step, until pairs are found anew,
+        // and let it go with more energy than it had.
+        if (surface[i] == spray) p[i] = std::max(p[i], 0.0);
         volume[i] = m[i] / (share ? (*share)[i] * rho[i] : rho[i]);
         T* slot = records[i];
         slot[water_slot::volume] = static_cast<T>(scale ? volume[i] * (*scale)[i] : volume[i]);

@@ -208,8 +208,9 @@ class WaterReinitialization final : public Effect<Dim> {
       for (const std::string& set : walls_) walk(world.list("water", set), world.records(set).template get<T>(), wall_pair, b, sums);
       for (Index i = begin; i < end; ++i) {
         const Arrangement<Dim>& s = sums[static_cast<std::size_t>(i - begin)];
-        // The divergence of position is Dim in the bulk; three quarters of it tell the surface.
-        surface[i] = -s.moment.trace() < 0.75 * Dim ? 1 : 0;
+        // The divergence of position is Dim in the bulk; three quarters of it tell the surface, half of it spray.
+        const double filled = -s.moment.trace() / Dim;
+        surface[i] = filled < 0.5 ? spray : filled < 0.75 ? 1 : 0;
         double lattice = lattice_;
         if constexpr (Porous) {
           const LatticeSums spread = (*spread_)(volume_at_dp * rho0 * (*n)[i] / m[i]);

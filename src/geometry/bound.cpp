@@ -2,20 +2,15 @@
 
 namespace sphgeo {
 
-double distance_bound(const Shape& shape, const Vec3& at) {
-  const auto* bounded = dynamic_cast<const BoundedShape*>(&shape);
-  return bounded ? bounded->bound(at) : shape.signed_distance(at);
-}
-
 bool on_inner_seam(const Shape& shape, const Vec3& at, double reach, bool flat) {
-  if (dynamic_cast<const BoundedShape*>(&shape) == nullptr) return false;
+  if (!shape.composed()) return false;
   // Beside a seam the solid goes on in every direction; along it the bound stays zero.
   double most = -std::numeric_limits<double>::infinity(), least = -most;
   for (int k = 0; k < 6; ++k) {
     if (flat && k % 3 == 1) continue;
     Vec3 p = at;
     p[k % 3] += k < 3 ? reach : -reach;
-    const double d = distance_bound(shape, p);
+    const double d = shape.bound(p);
     most = std::max(most, d);
     least = std::min(least, d);
   }

@@ -13,4 +13,25 @@ inline void inspect_parts(const std::vector<ShapePtr>& parts, CheckContext& cont
   }
 }
 
+/// Boxes of the parts; in 2D they reach along all of y.
+inline std::vector<Aabb> boxes_of(const std::vector<ShapePtr>& parts, bool flat) {
+  std::vector<Aabb> out;
+  for (const ShapePtr& part : parts) {
+    out.push_back(part->box());
+    if (flat) {
+      out.back().lo.y() = -std::numeric_limits<double>::infinity();
+      out.back().hi.y() = std::numeric_limits<double>::infinity();
+    }
+  }
+  return out;
+}
+
+/// Whether a part is at least `distance` away from a point outside of its box: then what is asked of it changes nothing, and
+/// need not be computed. `boxes` may be empty, for shapes that no deck made.
+inline bool farther(const std::vector<Aabb>& boxes, std::size_t part, const Vec3& at, double distance) {
+  if (part >= boxes.size()) return false;
+  const double d2 = (boxes[part].lo - at).cwiseMax(at - boxes[part].hi).cwiseMax(0.0).squaredNorm();
+  return d2 > 0.0 && (distance <= 0.0 || d2 >= distance * distance);
+}
+
 }  // namespace sphgeo

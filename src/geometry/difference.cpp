@@ -11,13 +11,17 @@ Schema<Difference> Difference::schema() {
   Schema<Difference> s("difference", "The first shape without all the others.");
   s.required("of", &Difference::of, unit::none, "The shape to keep, then those to take away.")
       .items(2);
-  s.check([](Difference& d, CheckContext& c) { set_scene(d, c); });
+  s.check([](Difference& d, CheckContext& c) {
+    set_scene(d, c);
+    d.boxes = boxes_of(d.of, d.flat);
+  });
   return s;
 }
 
 double Difference::bound(const Vec3& at) const {
-  double d = distance_bound(*of.front(), at);
-  for (std::size_t k = 1; k < of.size(); ++k) d = std::max(d, -distance_bound(*of[k], at));
+  double d = of.front()->bound(at);
+  for (std::size_t k = 1; k < of.size(); ++k)
+    if (!farther(boxes, k, at, -d)) d = std::max(d, -of[k]->bound(at));
   return d;
 }
 
@@ -25,7 +29,8 @@ double Difference::signed_distance(const Vec3& at) const {
   if (bound(at) > 0.0)
     return refined_distance([this](const Vec3& q) { return bound(q); }, at, -1, flat);
   double d = of.front()->signed_distance(at);
-  for (std::size_t k = 1; k < of.size(); ++k) d = std::max(d, -of[k]->signed_distance(at));
+  for (std::size_t k = 1; k < of.size(); ++k)
+    if (!farther(boxes, k, at, -d)) d = std::max(d, -of[k]->signed_distance(at));
   return d;
 }
 

@@ -165,7 +165,7 @@ double estimate_fill(const Shape& shape, double dp, int dim, const Aabb& clip) {
   // too.
   constexpr double deep = -std::numeric_limits<double>::max();
   return sampled_volume(
-             box, dim, [&](const Vec3& p) { return distance_bound(shape, p); },
+             box, dim, [&](const Vec3& p) { return shape.bound(p); },
              [](double d, double reach) { return overlap(d, reach, deep, 0.0); }) /
          std::pow(dp, dim);
 }
@@ -179,7 +179,7 @@ double estimate_layers(const Shape& shape, double dp, int dim, double thickness,
   if (!box.lo.allFinite() || !box.hi.allFinite()) return std::numeric_limits<double>::infinity();
   const double sign = outside ? -1.0 : 1.0;
   return sampled_volume(
-             box, dim, [&](const Vec3& p) { return sign * distance_bound(shape, p); },  // exact ones of composed shapes are dear
+             box, dim, [&](const Vec3& p) { return sign * shape.bound(p); },  // exact ones of composed shapes are dear
              [&](double d, double reach) { return overlap(d, reach, -thickness, 0.0); }) /
          std::pow(dp, dim);
 }
@@ -193,7 +193,7 @@ std::vector<Vec3> fill_lattice(const Shape& shape, double dp, int dim, const Aab
   if (!(lattice <= largest_lattice)) refuse_absurd(lattice);
   if (lattice > largest_fill) refuse_absurd(estimate_fill(shape, dp, dim, clip));
   return collect(box, origin.value_or(default_origin(shape, clip)), dp, dim, [&](const Vec3& p) {
-    const double d = distance_bound(shape, p);
+    const double d = shape.bound(p);
     if (std::abs(d) <= 1e-9 * dp) return Verdict{on_inner_seam(shape, p, 1e-4 * dp, dim == 2), 0.0};
     return Verdict{d < 0.0, std::abs(d)};
   });
@@ -207,7 +207,7 @@ double cut_volume(const Shape& shape, double dp, int dim) {
   const double reach = 0.5 * dp;
   double cells = 0;
   for (const Vec3& p : collect(box, origin, dp, dim, [&](const Vec3& at) {
-         const double d = distance_bound(shape, at);
+         const double d = shape.bound(at);
          return Verdict{d < reach, std::max(std::abs(d) - reach, 0.0)};
        }))
     cells += std::clamp(0.5 - shape.signed_distance(p) / dp, 0.0, 1.0);
@@ -226,14 +226,14 @@ std::vector<Vec3> fill_layers(const Shape& shape, double dp, int dim, double thi
   const double slack = 1e-9 * dp;
   const auto* plain_box = dynamic_cast<const Box*>(&shape);
   return collect(box, default_origin(shape, clip), dp, dim, [&](const Vec3& p) {
-    double d = outside ? -distance_bound(shape, p) : distance_bound(shape, p);
+    double d = outside ? -shape.bound(p) : shape.bound(p);
     if (d >= -slack) return Verdict{false, std::max(d - slack, 0.0)};
     if (plain_box && outside) {
       // Measured across each face separately, so that the corners of a tank are closed.
       Vec3 out = (plain_box->min - p).cwiseMax(p - plain_box->max);
       if (dim == 2) out.y() = 0.0;
       d = -out.maxCoeff();
-    } else if (dynamic_cast<const BoundedShape*>(&shape)) {
+    } else if (shape.composed()) {
       // The bound settles the far points cheaply; near the layer the true distance is worth its
       // price.
       if (-d >= thickness - slack) return Verdict{false, -d - thickness};

@@ -130,7 +130,7 @@ double HeightField::height(double x, double y) const {
          b * ((1.0 - a) * node(i, j + 1) + a * node(i + 1, j + 1));
 }
 
-double HeightField::patch_distance_squared(const Vec3& p, std::int32_t cell) const {
+double HeightField::patch_distance_squared(const Vec3& p, std::int32_t cell, double best) const {
   const int i = cell % (nx_ - 1), j = cell / (nx_ - 1);
   const double x0 = origin.x() + i * spacing;
   if (ny_ == 1) {
@@ -143,6 +143,17 @@ double HeightField::patch_distance_squared(const Vec3& p, std::int32_t cell) con
   // the twist kept, clamped to the square. Any (u, v) is on the patch, so the best seen is safe.
   const double c0 = node(i, j), cu = node(i + 1, j) - c0, cv = node(i, j + 1) - c0;
   const double cuv = node(i + 1, j + 1) - c0 - cu - cv;
+  // Without its twist the patch is a part of a plane, no farther than w from it. Far from the ground almost all patches end here.
+  {
+    const double zu = cu + 0.5 * cuv, zv = cv + 0.5 * cuv, w = 0.25 * std::abs(cuv);
+    const double fall = c0 - 0.25 * cuv + zu * (p.x() - x0) / spacing + zv * (p.y() - y0) / dy_ - p.z();
+    // Foot of the perpendicular on the plane, in (u, v), and how far it is outside of the square, m.
+    const double su = zu / spacing, sv = zv / dy_, drop = fall / (1.0 + su * su + sv * sv);
+    const double foot_u = (p.x() - su * drop - x0) / spacing, foot_v = (p.y() - sv * drop - y0) / dy_;
+    const double out_u = spacing * std::max({0.0, -foot_u, foot_u - 1.0}), out_v = dy_ * std::max({0.0, -foot_v, foot_v - 1.0});
+    const double least = std::sqrt(fall * drop + out_u * out_u + out_v * out_v) - w;
+    if (least > 0.0 && least * least > best) return std::numeric_limits<double>::infinity();
+  }
   double u = std::clamp((p.x() - x0) / spacing, 0.0, 1.0);
   double v = std::clamp((p.y() - y0) / dy_, 0.0, 1.0);
   double best2 = std::numeric_limits<double>::infinity();
@@ -150,7 +161,7 @@ double HeightField::patch_distance_squared(const Vec3& p, std::int32_t cell) con
     const double rx = x0 + u * spacing - p.x(), ry = y0 + v * dy_ - p.y();
     const double rz = c0 + cu * u + cv * v + cuv * u * v - p.z();
     const double d2 = rx * rx + ry * ry + rz * rz;
-    if (d2 >= best2 * (1.0 - 1e-14)) break;
+    if (d2 >= best2 * (1.0 - 1e-13)) break;
     best2 = d2;
     const double zu = cu + cuv * v, zv = cv + cuv * u;
     const double gu = rx * spacing + rz * zu, gv = ry * dy_ + rz * zv;
@@ -164,7 +175,8 @@ double HeightField::patch_distance_squared(const Vec3& p, std::int32_t cell) con
     u = std::clamp(u - (hvv * gu - huv * gv) / det, 0.0, 1.0);
     v = std::clamp(v - (huu * gv - huv * gu) / det, 0.0, 1.0);
   }
-  // A clamped Newton step may stop short on an edge; the four edges are straight and exact.
+  // A clamped Newton step may stop short on an edge; the four edges are straight and exact. Inside, the search has converged.
+  if (u > 0.0 && u < 1.0 && v > 0.0 && v < 1.0) return best2;
   const Vec3 a{x0, y0, c0}, b{x0 + spacing, y0, node(i + 1, j)}, c{x0, y0 + dy_, node(i, j + 1)},
       d{x0 + spacing, y0 + dy_, node(i + 1, j + 1)};
   const double edge = std::min({segment_distance(p, a, b), segment_distance(p, c, d),
@@ -188,8 +200,12 @@ double HeightField::signed_distance(const Vec3& at) const {
   // Beside the sides or beneath the underside, the top plays no part.
   if (above <= 0.0 && (side > 0.0 || under > 0.0)) return extruded_distance(side, under);
   const double start = out > 0.0 ? std::numeric_limits<double>::infinity() : above * above;
-  const double top = std::sqrt(
-      tree_.nearest(p, start, [&](std::int32_t cell) { return patch_distance_squared(p, cell); }));
+  double best = start;
+  const double top = std::sqrt(tree_.nearest(p, start, [&](std::int32_t cell) {
+    const double d2 = patch_distance_squared(p, cell, best);
+    best = std::min(best, d2);
+    return d2;
+  }));
   return above > 0.0 ? top : std::max({-top, side, under});
 }
 

@@ -19,7 +19,7 @@ Schema<Intersection> Intersection::schema() {
 
 double Intersection::bound(const Vec3& at) const {
   double d = -std::numeric_limits<double>::infinity();
-  for (const ShapePtr& part : of) d = std::max(d, distance_bound(*part, at));
+  for (const ShapePtr& part : of) d = std::max(d, part->bound(at));
   return d;
 }
 

@@ -55,7 +55,7 @@ LevelSetMesh::LevelSetMesh(const Shape& shape, const Aabb& around, double width,
                 bz = b / (blocks_.x * blocks_.y);
     Vec3 c = place(bx * edge_, by * edge_, bz * edge_) + Vec3::Constant(half);
     if (dim == 2) c.y() = 0.0;
-    centre[static_cast<std::size_t>(b)] = distance_bound(shape, c);
+    centre[static_cast<std::size_t>(b)] = shape.bound(c);
   });
   std::vector<Index> near;
   const Index nodes = dim == 3 ? edge_ * edge_ * edge_ : edge_ * edge_;

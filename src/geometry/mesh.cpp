@@ -52,7 +52,7 @@ class Contour {
                   : static_cast<Index>(std::ceil((box.hi[k] - box.lo[k]) / spacing)) + 3;
     value_.resize(at(n_[0] * n_[1] * n_[2]));
     parallel_for(static_cast<Index>(value_.size()), [&](Index i) {
-      const double d = distance_bound(shape_, place(i));
+      const double d = shape_.bound(place(i));
       // A node exactly on the surface would make triangles without area; one on a seam is inside.
       const double least = 1e-6 * spacing_;
       const bool solid =
@@ -102,7 +102,7 @@ class Contour {
         if (leaves == 1) add_segment(leave[0], enter[0]);
         if (leaves == 2) {
           const Vec3 middle = 0.5 * (place(c[0]) + place(c[2]));
-          const bool solid_middle = distance_bound(shape_, middle) < 0.0;
+          const bool solid_middle = shape_.bound(middle) < 0.0;
           // Connected solid: cut off the empty corner, whose entering edge follows the leaving one.
           const bool follows = (first_enter == first_leave + 1) == solid_middle;
           add_segment(leave[0], enter[follows ? 0 : 1]);
@@ -134,7 +134,7 @@ class Contour {
       for (int k = 0; k < 8; ++k) {
         const double s = k % 3 == 2 ? 0.5 : vp / (vp - vq);
         m = p + s * (q - p);
-        const double v = distance_bound(shape_, m);
+        const double v = shape_.bound(m);
         if (std::abs(v) < 1e-7 * spacing_) break;
         ((v < 0.0) == (vp < 0.0) ? p : q) = m;
         ((v < 0.0) == (vp < 0.0) ? vp : vq) = v;
@@ -186,7 +186,7 @@ struct Clipped final : BoundedShape {
   const Shape* shape = nullptr;
   Aabb clip;
   double bound(const Vec3& p) const override {
-    return std::max(distance_bound(*shape, p), box_distance(p, clip.lo, clip.hi, flat));
+    return std::max(shape->bound(p), box_distance(p, clip.lo, clip.hi, flat));
   }
   double signed_distance(const Vec3& p) const override { return bound(p); }
   Aabb box() const override { return clip; }

@@ -137,7 +137,7 @@ struct HeightField final : SceneShape {
 
  private:
   double node(int i, int j) const;
-  double patch_distance_squared(const Vec3& p, std::int32_t cell) const;
+  double patch_distance_squared(const Vec3& p, std::int32_t cell, double best) const;  // endless when more than `best`
 
   std::vector<double> grid_;  // metres, row by row
   int nx_ = 0, ny_ = 0;
@@ -176,12 +176,9 @@ using ShapePtr = std::shared_ptr<const Shape>;
 
 /// A shape whose cheap distance is only a lower bound of the true one (of the right sign).
 struct BoundedShape : SceneShape {
-  /// Right sign, magnitude at most the true distance.
-  virtual double bound(const Vec3& at) const = 0;
+  double bound(const Vec3& at) const override = 0;
+  bool composed() const override { return true; }
 };
-
-/// The bound of a BoundedShape, the distance of any other: enough to ask "inside or outside".
-double distance_bound(const Shape& shape, const Vec3& at);
 
 /// For a point whose bound is zero but for round-off: whether it lies on a seam within the solid
 /// (where parts that touch hide each other's surface) rather than on the surface. Looks `reach` (m)
@@ -191,6 +188,7 @@ bool on_inner_seam(const Shape& shape, const Vec3& at, double reach, bool flat);
 /// All points of any part. The distance is exact outside; inside it is searched (see refine.h).
 struct Union final : BoundedShape {
   std::vector<ShapePtr> of;
+  std::vector<Aabb> boxes;  ///< of the parts, to pass over those that are far
   static Schema<Union> schema();
   double bound(const Vec3& at) const override;
   double signed_distance(const Vec3& at) const override;
@@ -211,6 +209,7 @@ struct Intersection final : BoundedShape {
 /// The first part without all the others. The distance is exact inside; outside it is searched.
 struct Difference final : BoundedShape {
   std::vector<ShapePtr> of;
+  std::vector<Aabb> boxes;  ///< as of Union
   static Schema<Difference> schema();
   double bound(const Vec3& at) const override;
   double signed_distance(const Vec3& at) const override;
@@ -222,7 +221,7 @@ struct Difference final : BoundedShape {
 struct Complement final : BoundedShape {
   ShapePtr of;
   static Schema<Complement> schema();
-  double bound(const Vec3& at) const override { return -distance_bound(*of, at); }
+  double bound(const Vec3& at) const override { return -of->bound(at); }
   double signed_distance(const Vec3& at) const override { return -of->signed_distance(at); }
   Aabb box() const override;
   void inspect(CheckContext& context) const override;
@@ -252,7 +251,7 @@ struct Transform final : BoundedShape {
   Vec3 translate = Vec3::Zero();
   static Schema<Transform> schema();
   void prepare();
-  double bound(const Vec3& at) const override { return scale * distance_bound(*of, back(at)); }
+  double bound(const Vec3& at) const override { return scale * of->bound(back(at)); }
   double signed_distance(const Vec3& at) const override {
     return scale * of->signed_distance(back(at));
   }

@@ -10,20 +10,25 @@ const Register<Shape, Union> registered{"union"};
 Schema<Union> Union::schema() {
   Schema<Union> s("union", "All points of any of several shapes.");
   s.required("of", &Union::of, unit::none, "The shapes to join.").items(1);
-  s.check([](Union& u, CheckContext& c) { set_scene(u, c); });
+  s.check([](Union& u, CheckContext& c) {
+    set_scene(u, c);
+    u.boxes = boxes_of(u.of, u.flat);
+  });
   return s;
 }
 
 double Union::bound(const Vec3& at) const {
   double d = std::numeric_limits<double>::infinity();
-  for (const ShapePtr& part : of) d = std::min(d, distance_bound(*part, at));
+  for (std::size_t k = 0; k < of.size(); ++k)
+    if (!farther(boxes, k, at, d)) d = std::min(d, of[k]->bound(at));
   return d;
 }
 
 double Union::signed_distance(const Vec3& at) const {
   // Outside, the nearest part decides, and each part knows its own distance.
   double d = std::numeric_limits<double>::infinity();
-  for (const ShapePtr& part : of) d = std::min(d, part->signed_distance(at));
+  for (std::size_t k = 0; k < of.size(); ++k)
+    if (!farther(boxes, k, at, d)) d = std::min(d, of[k]->signed_distance(at));
   // Parts that touch (but for round-off) leave a seam within the solid where every part says
   // "zero"; sinking the surface by a hair makes the seam solid for the search.
   const double hair = 1e-12 * (1.0 + at.cwiseAbs().maxCoeff());

@@ -20,6 +20,7 @@ Json to_json(const RunFigures& f) {
   Json out;
   out["particles"] = Json::object();
   for (const auto& [set, n] : f.particles) out["particles"][set] = n;
+  if (f.entering > 0) out["entering"] = f.entering;
   out["memory_bytes"] = f.memory_bytes;
   out["disk_bytes"] = f.disk_bytes;
   out["advection_steps"] = f.advection_steps;

@@ -20,6 +20,7 @@ struct RunFigures {
   std::uint64_t disk_bytes = 0;                          ///< of the run folder at the end
   Index advection_steps = 0, acoustic_steps = 0;
   std::optional<double> wall_s;  ///< none without a calibration
+  Index entering = 0;            ///< particles that inlets bring in until the end
 
   Index total_particles() const;
 };

@@ -95,7 +95,7 @@ Json to_json(const Summary& s) {
   }
   if (s.forecast) {
     out["forecast"] = to_json(*s.forecast);
-    out["forecast"]["actual"] = to_json(RunFigures{s.particles, s.memory_peak_bytes, s.disk_bytes, s.advection_steps, s.acoustic_steps, s.wall_s});
+    out["forecast"]["actual"] = to_json(RunFigures{s.particles, s.memory_peak_bytes, s.disk_bytes, s.advection_steps, s.acoustic_steps, s.wall_s, 0});
   }
   out["guard"] = guard_json(s.guard);
   out["checkpoints"] = {

@@ -22,7 +22,7 @@ inline constexpr FieldSpec density_rate{"density_rate", scalar, state, unit::non
                                         "rate of change of the density, Eq. 58"};
 inline constexpr FieldSpec pressure{"pressure", scalar, derived, unit::pressure, "pressure, Eq. 26"};
 inline constexpr FieldSpec volume{"volume", scalar, derived, unit::volume, "volume; an area in 2D, Eq. 27"};
-inline constexpr FieldSpec surface{"surface", tag, derived, unit::none, "1 on the free surface"};
+inline constexpr FieldSpec surface{"surface", tag, state, unit::none, "1 on the free surface, 2 in spray: less than half the neighborhood is filled"};
 inline constexpr FieldSpec normal{"normal", vector, state, unit::none, "outward normal of a wall"};
 inline constexpr FieldSpec reference_position{"reference_position", vector, reference, unit::length, "place at t = 0"};
 inline constexpr FieldSpec reference_normal{"reference_normal", vector, reference, unit::none, "normal at t = 0"};

@@ -43,7 +43,7 @@ bool overlap(const Shape& a, const Shape& b, double dp, int dim) {
     for (int j = 0; j < n.y(); ++j)
       for (int i = 0; i < n.x(); ++i) {
         const Vec3 p = box.lo + size.cwiseProduct(Vec3((i + 0.5) / n.x(), (j + 0.5) / n.y(), (k + 0.5) / n.z()));
-        if (distance_bound(a, p) < -1e-6 * dp && distance_bound(b, p) < -1e-6 * dp) return true;
+        if (a.bound(p) < -1e-6 * dp && b.bound(p) < -1e-6 * dp) return true;
       }
   return false;
 }

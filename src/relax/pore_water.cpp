@@ -23,7 +23,7 @@ constexpr double lattice_distance = 6;
 
 /// The number of the body (among `bodies`) that holds a place: its own unless it has left it.
 std::size_t holder(const Model& model, const std::vector<std::size_t>& bodies, std::size_t own, const Vec3& at) {
-  const auto depth = [&](std::size_t k) { return distance_bound(*model.bodies[bodies[k]].shape, at); };
+  const auto depth = [&](std::size_t k) { return model.bodies[bodies[k]].shape->bound(at); };
   if (bodies.size() == 1 || depth(own) < 0) return own;
   std::size_t best = own;
   for (std::size_t k = 0; k < bodies.size(); ++k)
@@ -166,7 +166,7 @@ std::vector<double> expected_shares(const Model& model) {
         for (int i = 0; i < n; ++i) {
           Vec3 p = box.lo + (box.hi - box.lo).cwiseProduct(Vec3(i + 0.5, j + 0.5, k + 0.5) / n);
           if (model.dimension == 2) p.y() = 0;
-          if (distance_bound(shape, p) >= 0) continue;
+          if (shape.bound(p) >= 0) continue;
           const double f = target.fraction(p);
           inside += 1;
           water += f >= 0 ? f : 1;

@@ -9,8 +9,8 @@
 namespace sphgeo {
 
 double distance_near(const Shape& shape, const Vec3& at, double reach) {
-  const double d = distance_bound(shape, at);
-  return std::abs(d) < reach && dynamic_cast<const BoundedShape*>(&shape) ? shape.signed_distance(at) : d;
+  const double d = shape.bound(at);
+  return std::abs(d) < reach && shape.composed() ? shape.signed_distance(at) : d;
 }
 
 WaterTarget::WaterTarget(const Model& model) {
@@ -31,7 +31,7 @@ WaterTarget::WaterTarget(const Model& model) {
 WaterTarget::Where WaterTarget::locate(const Vec3& at) const {
   Where out{-1, std::numeric_limits<double>::infinity()};
   for (std::size_t k = 0; k < soils_.size(); ++k) {
-    const double d = distance_bound(*soils_[k].shape, at);
+    const double d = soils_[k].shape->bound(at);
     if (d < 0) return {static_cast<int>(k), std::min(out.holds, -d)};
     out.holds = std::min(out.holds, d);
   }

@@ -79,7 +79,7 @@ void check_water_in_solid(const World<Dim>& world, const Solid& s, Diagnostics& 
   const double reach = support_radius(model);
   const auto deep = [&](Index i) {
     const Vec3 at = to_space<Dim>(x[i]);
-    return box.contains(at) && distance_bound(*s.shape, at) < -0.5 * model.resolution && s.shape->signed_distance(at) < -reach;
+    return box.contains(at) && s.shape->bound(at) < -0.5 * model.resolution && s.shape->signed_distance(at) < -reach;
   };
   const double count = ordered_sum(water->size(), [&](Index i) { return deep(i) ? 1.0 : 0.0; });
   if (!(count > 0)) return;

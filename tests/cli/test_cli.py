@@ -4,7 +4,9 @@
     test_cli.py SPHGEO
 """
 import json
+import math
 import os
+import struct
 import subprocess
 import sys
 from pathlib import Path
@@ -67,6 +69,31 @@ class CommandLine(ProgramTest):
         self.refused(2, "no bench scene 'dam_brek'; did you mean 'dam_break'?", "bench", "--scene",
                      "dam_brek")
         self.assertFalse((self.here / "out").exists())
+
+    def test_export(self):
+        deck = self.write("solid.yaml", """\
+dimension: 3
+resolution: 0.1
+end_time: 1
+materials: [{name: rock, type: rigid, density: 2600}]
+bodies: [{name: ball, material: rock, shape: {type: sphere, center: [0, 0, 1], radius: 0.5}}]
+boundaries: [{name: ground, type: wall, shape: {type: box, min: [-1, -1, -0.5], max: [1, 1, 0]}}]
+""")
+        self.accepted("export", deck, "ball", "-o", "ball.stl")
+        data = (self.here / "ball.stl").read_bytes()
+        faces = [struct.unpack_from("<12fH", data, 84 + 50 * k)[3:12] for k in range(struct.unpack_from("<I", data, 80)[0])]
+        self.assertEqual(len(data), 84 + 50 * len(faces))
+        volume = sum(x0 * (y1 * z2 - z1 * y2) + y0 * (z1 * x2 - x1 * z2) + z0 * (x1 * y2 - y1 * x2)
+                     for x0, y0, z0, x1, y1, z1, x2, y2, z2 in faces) / 6
+        self.assertAlmostEqual(volume, 4 / 3 * math.pi * 0.125, delta=0.01)
+        # A deck takes it back.
+        taken = self.write("taken.yaml", (self.here / "solid.yaml").read_text().replace("{type: sphere, center: [0, 0, 1], radius: 0.5}", "{type: stl, file: ball.stl}"))
+        self.assertIn("the deck is sound", self.accepted("check", taken, "--no-calibrate").stdout)
+        self.accepted("export", deck, "ground", "-o", "ground.stl", "--spacing", "0.2")
+        self.refused(2, ["no body and no wall of the deck is named 'bal'", "did you mean 'ball'?"], "export", deck, "bal", "-o", "x.stl")
+        self.refused(2, "STL is for scenes in 3D", "export", deck, "ball", "-o", "x.stl", "--set", "dimension=2")
+        self.refused(2, "is no length above zero", "export", deck, "ball", "-o", "x.stl", "--spacing=-1")
+        self.assertFalse((self.here / "x.stl").exists())
 
     def test_decks_that_cannot_be_read(self):
         self.refused(2, ["none.yaml", "No such file"], "check", "none.yaml")

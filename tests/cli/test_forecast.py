@@ -47,6 +47,19 @@ class Forecast(unittest.TestCase):
         self.assertIn("time unknown", text)
         self.assertIn("<- this deck", text)
 
+    def test_inlets(self):
+        """What inlets bring in is counted, in the memory too, and comes out in the run."""
+        rain = str(ROOT / "decks/hard/rain_on_roof.yaml")
+        words = ("--set", "end_time=0.5", "--set", "boundaries[1].share=0.5")
+        with_rain = json.loads(call("check", rain, "--json", "--no-calibrate", *words).stdout)["forecast"]
+        self.assertEqual(with_rain["particles"]["water"], 0)
+        # Width 0.8 m, 2 m/s, half a second, half the places, of 1e-4 m2.
+        self.assertAlmostEqual(with_rain["entering"], 0.8 * 2 * 0.5 * 0.5 / 1e-4, delta=100)
+        self.assertEqual([r["entering"] > s["entering"] for r, s in zip(with_rain["ladder"][1:], with_rain["ladder"])], [True] * 3)
+        dry = json.loads(call("check", rain, "--json", "--no-calibrate", *words, "--set", "boundaries[1].share=0.001").stdout)["forecast"]
+        self.assertGreater(with_rain["memory_bytes"], dry["memory_bytes"] + 400 * with_rain["entering"])
+        self.assertIn("inlets bring in about", call("check", rain, "--no-calibrate").stdout)
+
     def test_ladder(self):
         """The rungs are what the deck itself says at those spacings."""
         for rung in check("--no-calibrate")["ladder"]:

@@ -50,20 +50,25 @@ void check_surface(double size, double touched) {
   Rig<Dim> rig(block(Dim, size, "transport_velocity: false"));
   rig.plan_it();
   const auto& x = rig.water().vector(fields::position);
-  Index outer = 0, inner = 0;
+  Index outer = 0, inner = 0, faces = 0;
   for (Index i = 0; i < x.size(); ++i) {
     const double depth = test::depth_in_box<Dim>(x[i], Vec<Dim>::Zero(), Vec<Dim>::Constant(size));
     const int flag = rig.water().tag(fields::surface)[i];
     CAPTURE(depth);
     if (depth < 0.06) {
       ++outer;
-      CHECK(flag == 1);
+      // At a corner less than half of the neighborhood is filled, on a face more.
+      const bool face = ((x[i].array() - size / 2).abs() < 0.3 * size).count() == Dim - 1;
+      CHECK(flag >= 1);
+      if (face) CHECK(flag == 1);
+      faces += face;
     } else if (depth > touched) {
       ++inner;
       CHECK(flag == 0);
     }
   }
-  CHECK(outer > 0);
+  CHECK(faces > 0);
+  CHECK(outer > faces);
   CHECK(inner > 0);
 }
 
@@ -95,7 +100,7 @@ TEST_SUITE("effects") {
     rig.plan_it();
     const Vec<2> before = rig.water().vector(fields::position)[0];
     rig.arrange();
-    CHECK(rig.water().tag(fields::surface)[0] == 1);
+    CHECK(rig.water().tag(fields::surface)[0] == spray);
     CHECK(rig.water().vector(fields::position)[0] == before);
     CHECK(rig.water().scalar(fields::density)[0] == 1000.0);
   }
