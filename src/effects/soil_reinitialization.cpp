@@ -133,9 +133,15 @@ class SoilReinitialization final : public Effect<Dim> {
       auto& n = soil_->scalar(fields::volume_fraction);
       auto& crowding = soil_->scalar(fields::crowding);
       const double self = Kernel<Dim>(soil_->smoothing_length()).w(0.0);
+      // Of the neighborhood, the corner of a block has 1/4 in 2D, 1/8 in 3D.
+      const double alone = self * std::pow(soil_->spacing(), Dim) / lattice_, detached = alone + 0.8 / (1 << Dim) * (1 - alone);
       parallel_for(soil_->size(), [&](Index i) {
         crowding[i] = (around_[static_cast<std::size_t>(i)].number + self * rest(i)) / lattice_;
         const double summed = n0[i] * crowding[i];
+        // Grains that come apart leave the range of each other's kernels with the volume fraction they had, and would meet at that range
+        // again as if they touched. With fewer neighbors than at the corner of a block one is no part of a skeleton any more, and
+        // as loose as it looks.
+        if (crowding[i] < detached) n[i] = std::min(n[i], summed);
         // A sum that falls short is a surface or a splash: it keeps its volume fraction, up to the factor
         // by which it exceeds that at rest, as the density of water does.
         n[i] = summed + std::max(0.0, n[i] - summed) * n0[i] / n[i];

@@ -77,6 +77,7 @@ class SoilStress final : public Effect<Dim> {
   std::string acts_on() const override { return !walls_.empty() ? "soil, also near walls" : "soil"; }
   Needs needs() const override {
     Needs n{{{"soil", &fields::volume, Access::read}, {"soil", &fields::volume_fraction, Access::read},
+             {"soil", &fields::initial_volume_fraction, Access::read},
              {"soil", &fields::velocity, Access::read},
              {"soil", &fields::stress, Access::update},
              {"soil", &fields::gradient_correction, Access::write},
@@ -142,6 +143,7 @@ class SoilStress final : public Effect<Dim> {
     auto& rate = soil_->scalar(fields::volume_fraction_rate);
     const auto& volume = soil_->scalar(fields::volume);
     const auto& n = soil_->scalar(fields::volume_fraction);
+    const auto& n0 = soil_->scalar(fields::initial_volume_fraction);
     const auto& part = soil_->tag(fields::part);
     for (Index k = 0; k < count; k += L::width) {
       const int lanes = static_cast<int>(std::min<Index>(L::width, count - k));
@@ -181,7 +183,9 @@ class SoilStress final : public Effect<Dim> {
       const PlasticStep<L> plastic = update_stress(s, gradient, L(dt), m);
       for (int lane = 0; lane < lanes; ++lane) {
         const Index i = first + k + lane;
-        for (int c = 0; c < 6; ++c) stress[i][c] = s[c][lane];
+        // What has come apart (see SoilReinitialization) bears nothing until it is packed again.
+        const bool bears = n[i] > loose * n0[i];
+        for (int c = 0; c < 6; ++c) stress[i][c] = bears ? s[c][lane] : 0.0;
         for (int a = 0; a < Dim; ++a)
           for (int c = a; c < Dim; ++c) correction[i][tensor_index<Dim>[a][c]] = inverse.entry[a][c][lane];
         strain[i] += plastic.strain[lane];
@@ -214,6 +218,8 @@ class SoilStress final : public Effect<Dim> {
     embed(product, gradient);
   }
 
+  // Share of the volume fraction at t = 0 below which soil bears nothing. Flowing sand keeps above 0.9 of it.
+  static constexpr double loose = 0.6;
   // Of the sum over neighbors, by disorder alone.
   static constexpr double crowding_margin = 0.05;
 
