@@ -15,7 +15,7 @@ namespace sphgeo {
 /// Water and soil act on a solid with the pressure of one acoustic step through all of the step. On the layer of the body that they reach, as thick as a
 /// spacing or as the body, that pressure is a spring and a mass: L = rho dp / (rho_body thickness) compares the masses, and a step that is too
 /// long feeds the body energy. Measured for plates with water or sand on both sides, of 1/4 to 4 times the density of
-/// water, 1 to 2 spacings thick, of layers of half a spacing and one: with water the CFL number (Eq. 92) may be 0.22 / L, with soil 0.22 / sqrt(L);
+/// water, 1 to 2 spacings thick, of layers of half a spacing and one: with water the CFL number (Eq. 92) may be 0.22 / L, with soil 0.27 / L;
 /// at 1.5 times as much they shake.
 template <int Dim>
 double step_beside_light_solids(const World<Dim>& world, const std::string& set_name) {
@@ -24,19 +24,19 @@ double step_beside_light_solids(const World<Dim>& world, const std::string& set_
   const auto& part = set.tag(fields::part);
   const auto& reference = set.vector(fields::reference_position);
   struct Medium {
-    double density, spacing, cfl, power, crossing;  // crossing: h / c
+    double density, spacing, cfl, crossing;  // crossing: h / c
   };
   std::vector<Medium> media;
   if (const ParticleSet<Dim>* water = world.find("water")) {
     const WaterConstants w = WaterConstants::of(world);
-    media.push_back({w.density, water->spacing(), 0.22, 1.0, water->smoothing_length() / w.sound_speed});
+    media.push_back({w.density, water->spacing(), 0.22, water->smoothing_length() / w.sound_speed});
   }
   if (const ParticleSet<Dim>* soil = world.find("soil")) {
     const SoilParts soils(world);
     double density = 0;
     for (const SoilPart& s : soils.of)
       if (s.moves) density = std::max(density, s.density);
-    if (soils.deformable) media.push_back({density, soil->spacing(), 0.22, 0.5, soil->smoothing_length() / soils.fastest_wave});
+    if (soils.deformable) media.push_back({density, soil->spacing(), 0.27, soil->smoothing_length() / soils.fastest_wave});
   }
   double bound = std::numeric_limits<double>::infinity(), coarsest = 0;
   for (const Medium& m : media) coarsest = std::max(coarsest, m.spacing);
@@ -50,7 +50,7 @@ double step_beside_light_solids(const World<Dim>& world, const std::string& set_
         thickness = std::max(thickness, set.spacing() - 2 * shape.signed_distance(to_space<Dim>(reference[i])));
     for (const Medium& m : media) {
       const double lightness = m.density * m.spacing / (parts.of[b].elastic->density * std::min(thickness, m.spacing));
-      bound = std::min(bound, m.cfl * m.crossing / std::pow(lightness, m.power));
+      bound = std::min(bound, m.cfl * m.crossing / lightness);
     }
   }
   return bound;
