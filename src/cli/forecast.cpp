@@ -28,6 +28,8 @@ constexpr double largest_set = (1 << 29) - 2;
 constexpr double calibrated_particles = 400'000;
 // More than any particle takes, bytes: whatever fits with it needs no closer look.
 constexpr double generous_bytes = 10'000;
+// What a particle of water takes where none is there yet to learn from, bytes: as measured.
+constexpr double entering_bytes_2d = 600, entering_bytes_3d = 1100;
 // Files of a run beside frames and rows: the resolved deck, the summary, the heads of the tables.
 constexpr double fixed_files = 16'000;
 // What HDF5 takes for itself when it builds a checkpoint: its code and caches, as measured.
@@ -213,7 +215,8 @@ RunFigures ForecastBasis::figures(double coarser, const ParticleCounts& at, int 
   ParticleCounts end = at;
   for (auto& [set, n] : end)
     if (set == "water") n += entering;
-  r.memory_bytes = static_cast<std::uint64_t>(base_ + bytes_at(shares_, counts_, end) + output_.series_bytes + checkpoint_library +
+  const double unseen = count_of(counts_, "water") > 0 ? 0 : entering * (model_.dimension == 2 ? entering_bytes_2d : entering_bytes_3d);
+  r.memory_bytes = static_cast<std::uint64_t>(base_ + bytes_at(shares_, counts_, end) + unseen + output_.series_bytes + checkpoint_library +
                                               std::max(output_.buffer_bytes, output_.checkpoint_bytes) * larger * at_end);
   r.advection_steps = whole(std::ceil(steps_.advection / coarser));
   r.acoustic_steps = whole(std::ceil(steps_.acoustic / coarser));
