@@ -1,4 +1,5 @@
 #include <cmath>
+#include <optional>
 
 #include "core/parallel.h"
 #include "effects/light_solids.h"
@@ -72,7 +73,6 @@ class SolidKick final : public Effect<Dim> {
         sound_ = std::max(sound_, parts.of[b].wave_speed);
         slowest_ = std::min(slowest_, parts.of[b].wave_speed);
       }
-    beside_ = step_beside_light_solids(world, set_);
   }
 
   void limit(const World<Dim>& world, StepLimits& limits) const override {
@@ -89,7 +89,9 @@ class SolidKick final : public Effect<Dim> {
     const double sharper = n.solid_gradient == "quadratic" ? 0.7 : 1.0;
     const double step = sharper * n.cfl_solid * std::min(h / (sound_ + speed), std::sqrt(h / std::max(pull, 1e-300)));
     limits.solid = std::min(limits.solid, step);
-    limits.acoustic = std::min(limits.acoustic, beside_);
+    // Not before: a run that is resumed has no particles yet when it is prepared.
+    if (!beside_) beside_ = step_beside_light_solids(world, set_);
+    limits.acoustic = std::min(limits.acoustic, *beside_);
     limits.advection = std::min(limits.advection, n.cfl_advection * h / std::max(speed, 1e-300));
     // Alone, a solid has no configuration to update: how often somebody may look decides.
     if (!world.find("water") && !world.find("soil")) limits.advection = std::min(limits.advection, n.advection_ratio_max * step);
@@ -97,7 +99,7 @@ class SolidKick final : public Effect<Dim> {
 
  private:
   std::string set_;
-  double beside_ = std::numeric_limits<double>::infinity();  // bound of the acoustic step, s
+  mutable std::optional<double> beside_;  // bound of the acoustic step, s
   double sound_ = 0, slowest_ = std::numeric_limits<double>::infinity();  // of its bodies, m/s
 };
 
