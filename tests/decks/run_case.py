@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs a deck with 1, 2 and 4 threads: each run ends well, what the deck expects is met, the run folder
+"""Runs a deck with 1 and 3 threads: each run ends well, what the deck expects is met, the run folder
 is complete and its resolved deck is a valid deck, the results are the same bits, and they are what they were
 when the baseline of the case was written (baselines/NAME.json, within tolerances.yaml; with --lively tolerances_lively.yaml).
 
@@ -19,7 +19,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
 from run_folder import differing, results  # noqa: E402
 
-THREADS = (1, 2, 4)
+THREADS = (1, 3)  # an odd number shares out no work evenly
 HERE = Path(__file__).resolve().parent
 
 

@@ -31,7 +31,7 @@ Samples sampled(int n, double end, F f) {
 }
 
 double value_of(const Samples& s, const char* name, std::optional<double> at = {}) {
-  return reduce(s, name, at).value_or(-999);
+  return sphgeo::reduce(s, name, at).value_or(-999);
 }
 
 }  // namespace
@@ -51,14 +51,14 @@ TEST_SUITE("output") {
     CHECK(value_of(s, "time_of_max") == doctest::Approx(4));
     CHECK(value_of(s, "time_of_min") == doctest::Approx(0));
     CHECK(value_of(s, "at", 1.2345) == doctest::Approx(3 * 1.2345 - 2));
-    CHECK_FALSE(reduce(s, "at", 4.1));
-    CHECK_FALSE(reduce(s, "at"));
-    CHECK_FALSE(reduce(s, "period"));
-    CHECK_THROWS_AS(reduce(s, "median"), std::invalid_argument);
-    CHECK_THROWS_AS(reduce({}, "median"), std::invalid_argument);
-    for (const std::string_view name : reduction_names()) CHECK_FALSE(reduce({}, name, 0));
+    CHECK_FALSE(sphgeo::reduce(s, "at", 4.1));
+    CHECK_FALSE(sphgeo::reduce(s, "at"));
+    CHECK_FALSE(sphgeo::reduce(s, "period"));
+    CHECK_THROWS_AS(sphgeo::reduce(s, "median"), std::invalid_argument);
+    CHECK_THROWS_AS(sphgeo::reduce({}, "median"), std::invalid_argument);
+    for (const std::string_view name : reduction_names()) CHECK_FALSE(sphgeo::reduce({}, name, 0));
     CHECK(value_of({{1}, {5}}, "mean") == 5);
-    CHECK_FALSE(reduce({{1}, {5}}, "slope"));
+    CHECK_FALSE(sphgeo::reduce({{1}, {5}}, "slope"));
   }
 
   TEST_CASE("a window cuts between samples, and samples without support are left out") {
@@ -97,8 +97,8 @@ TEST_SUITE("output") {
         CHECK(value_of(noisy, "period") == doctest::Approx(period).epsilon(2e-2));
         CHECK(value_of(noisy, "frequency") == doctest::Approx(1 / value_of(noisy, "period")));
       }
-    CHECK_FALSE(reduce(sampled(40, 0.7, [](double t) { return std::sin(2 * pi * t); }), "period"));
-    CHECK_FALSE(reduce(sampled(40, 1, [](double) { return 1; }), "period"));
+    CHECK_FALSE(sphgeo::reduce(sampled(40, 0.7, [](double t) { return std::sin(2 * pi * t); }), "period"));
+    CHECK_FALSE(sphgeo::reduce(sampled(40, 1, [](double) { return 1; }), "period"));
   }
 
   TEST_CASE("the difference of curves") {
