@@ -229,6 +229,7 @@ int main(int argc, char** argv) {
   add_deck(export_app, exported.deck, exported.set);
   export_app->add_option("name", exported.name, "the body or the wall")->required()->type_name("NAME");
   export_app->add_option("-o,--output", exported.output, "the file")->required()->type_name("FILE");
+  export_app->add_flag("--overwrite", exported.overwrite, "replace the file if it exists");
   export_app->add_option("--spacing", exported.spacing, "of the grid that finds the surface, m (default: half the resolution)")->type_name("S");
   export_app->callback([&] { code = run_guarded([&] { return export_command(exported); }); });
 

@@ -15,7 +15,7 @@ _sphgeo() {
     run) options="--help -h --set --output -o --threads --overwrite --resume --max-hours --max-steps --max-acoustic-steps --verify --no-report --quiet -q" ;;
     check) options="--help -h --set --explain --json --preview --no-calibrate --threads" ;;
     relax) options="--help -h --set --output -o --threads --overwrite --verify --quiet -q" ;;
-    export) options="--help -h --set --output -o --spacing" ;;
+    export) options="--help -h --set --output -o --spacing --overwrite" ;;
     study) options="--help -h --set --vary --combine --output -o --jobs --threads --max-hours --quiet -q" ;;
     compare) options="--help -h --tolerances --update --json --all" ;;
     bench) options="--help -h --effects --json --scene --size --precision --seconds --repeats" ;;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -112,6 +113,12 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
   }
   j["particles"] = particles;
   j["sound_speed"] = {{"value", scene.sound.value}, {"max_speed", scene.sound.max_speed}, {"because", scene.sound.because}};
+  const StepLimits steps = world.sets().empty() ? StepLimits{} : plan.limits();
+  const bool stepping = std::isfinite(steps.advection) && std::isfinite(steps.acoustic);
+  if (stepping) {
+    j["time_steps"] = {{"advection", steps.advection}, {"acoustic", steps.acoustic}, {"acoustic_by", steps.acoustic_by}};
+    if (std::isfinite(steps.solid)) j["time_steps"]["solid"] = steps.solid;
+  }
   const std::optional<Forecast> forecast = forecast_of<Dim>(world, plan, scene.sound, wishes, base, options, start);
   if (forecast) j["forecast"] = to_json(*forecast);
   if (options.json) {
@@ -125,6 +132,9 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
   if (scene.pore_water) std::cout << fmt::format("  {}\n", printable(relaxation_line(model, *scene.pore_water)));
   if (world.find("water"))
     std::cout << fmt::format("  speed of sound {:.4g} m/s: {}\n", scene.sound.value, scene.sound.because);
+  if (stepping)
+    std::cout << fmt::format("  time steps at the start: advection {:.3g} s, acoustic {:.3g} s, bounded by {}{}\n", steps.advection, steps.acoustic, steps.acoustic_by,
+                             std::isfinite(steps.solid) ? fmt::format(", solids {:.3g} s", steps.solid) : "");
   if (options.explain) print_plan(j);
   if (forecast) std::cout << fmt::format("{}", render_forecast(*forecast, model.resolution));
   if (const double entering = entering_particles(model); entering > 0)
@@ -139,6 +149,7 @@ int check_command(const CheckOptions& options) {
   const auto start = clock_type::now();
   const Model model = read_deck(options.deck, options.set);
   refuse_too_large(model);
+  if (options.threads > 0) set_threads(options.threads);  // also while the scene is built
   return model.dimension == 2 ? check<2>(model, options, start) : check<3>(model, options, start);
 }
 

@@ -59,6 +59,7 @@ struct ExportOptions {
   std::string output;              ///< an STL file
   std::vector<std::string> set;
   std::optional<double> spacing;   ///< of the grid that finds the surface, m; empty: half the resolution
+  bool overwrite = false;          ///< whether the file may exist
 };
 /// Writes the surface of a body or a wall as binary STL. Throws Error (usage), DeckError, IoError.
 int export_command(const ExportOptions& options);

@@ -41,6 +41,8 @@ int export_command(const ExportOptions& options) {
   const auto solid = solid_named(model, options.name);
   const double spacing = options.spacing.value_or(0.5 * model.resolution);
   if (!(spacing > 0)) throw Error(ExitCode::usage, fmt::format("--spacing {} is no length above zero", exact(spacing)));
+  if (!options.overwrite && std::filesystem::exists(options.output))
+    throw Error(ExitCode::usage, fmt::format("{} exists; --overwrite replaces it", printable(options.output)));
   SurfaceMesh mesh = surface_mesh(*solid, spacing, 3);
   write_stl(options.output, {std::move(mesh.points), std::move(mesh.triangles)});
   std::cout << fmt::format("{}: {} triangles\n", printable(options.output), (std::filesystem::file_size(options.output) - 84) / 50);

@@ -259,6 +259,7 @@ int run_command(const RunOptions& options) {
   const auto start = clock_type::now();
   const Model model = read_deck(options.deck, options.set);
   refuse_too_large(model);
+  if (options.threads > 0) set_threads(options.threads);  // also while the scene is built
   if (model.dimension == 2) return DeckRun<2>(model, options, start)();
   return DeckRun<3>(model, options, start)();
 }

@@ -77,28 +77,34 @@ Motion::Pose Motion::pose(double t) const {
   return p;
 }
 
-Vec3 Motion::position(const Vec3& reference, double t) const {
-  const Pose p = pose(t);
+Vec3 Motion::placed(const Vec3& reference, const Pose& p) const {
   if (p.angle == 0.0) return reference + p.shift;
   return center + Eigen::AngleAxisd(p.angle, axis) * (reference - center) + p.shift;
 }
 
-Vec3 Motion::velocity(const Vec3& reference, double t) const {
-  if (!moves_at(t)) return Vec3::Zero();
-  const double d = difference_step;
-  return (position(reference, t + d) - position(reference, t - d)) / (2 * d);
-}
-
-Vec3 Motion::acceleration(const Vec3& reference, double t) const {
-  if (!moves_at(t)) return Vec3::Zero();
-  const double d = difference_step;
-  return (position(reference, t + d) - 2 * position(reference, t) + position(reference, t - d)) / (d * d);
-}
-
-Vec3 Motion::direction(const Vec3& reference, double t) const {
-  const Pose p = pose(t);
+Vec3 Motion::turned(const Vec3& reference, const Pose& p) const {
   return p.angle == 0.0 ? reference : Vec3(Eigen::AngleAxisd(p.angle, axis) * reference);
 }
+
+Motion::Moment::Moment(const Motion& motion, double middle, double end)
+    : motion_(motion), moves_(motion.moves_at(middle)), end_(motion.pose(end)), before_(motion.pose(middle - difference_step)),
+      middle_(motion.pose(middle)), after_(motion.pose(middle + difference_step)) {}
+
+Vec3 Motion::Moment::velocity(const Vec3& reference) const {
+  if (!moves_) return Vec3::Zero();
+  return (motion_.placed(reference, after_) - motion_.placed(reference, before_)) / (2 * difference_step);
+}
+
+Vec3 Motion::Moment::acceleration(const Vec3& reference) const {
+  if (!moves_) return Vec3::Zero();
+  return (motion_.placed(reference, after_) - 2 * motion_.placed(reference, middle_) + motion_.placed(reference, before_)) /
+         (difference_step * difference_step);
+}
+
+Vec3 Motion::position(const Vec3& reference, double t) const { return placed(reference, pose(t)); }
+Vec3 Motion::velocity(const Vec3& reference, double t) const { return Moment(*this, t, t).velocity(reference); }
+Vec3 Motion::acceleration(const Vec3& reference, double t) const { return Moment(*this, t, t).acceleration(reference); }
+Vec3 Motion::direction(const Vec3& reference, double t) const { return turned(reference, pose(t)); }
 
 double Motion::max_speed(const Vec3& reference, double end) const {
   double fastest = 0;

@@ -24,6 +24,27 @@ struct Motion {
 
   static Schema<Motion> schema();
 
+  /// Shift and angle at a time: the same for all points.
+  struct Pose {
+    Vec3 shift;
+    double angle;
+  };
+  /// The motion over a time step: place and direction at its end, velocity and acceleration at its middle, as the four
+  /// functions below give them. For many points at once: formulas, tables and waves are asked once.
+  class Moment {
+   public:
+    Moment(const Motion& motion, double middle, double end);
+    Vec3 position(const Vec3& reference) const { return motion_.placed(reference, end_); }
+    Vec3 velocity(const Vec3& reference) const;
+    Vec3 acceleration(const Vec3& reference) const;
+    Vec3 direction(const Vec3& reference) const { return motion_.turned(reference, end_); }
+
+   private:
+    const Motion& motion_;
+    bool moves_;
+    Pose end_, before_, middle_, after_;
+  };
+
   /// Where the point that was at `reference` at t = 0 is at time t.
   Vec3 position(const Vec3& reference, double t) const;
   Vec3 velocity(const Vec3& reference, double t) const;
@@ -34,11 +55,9 @@ struct Motion {
   double max_speed(const Vec3& reference, double end) const;
 
  private:
-  struct Pose {
-    Vec3 shift;
-    double angle;
-  };
   Pose pose(double t) const;
+  Vec3 placed(const Vec3& reference, const Pose& p) const;
+  Vec3 turned(const Vec3& reference, const Pose& p) const;
   double clamp(double t) const;
   bool moves_at(double t) const { return t > from && (!until || t < *until); }
 

@@ -11,12 +11,13 @@
 namespace sphgeo {
 
 Schema<Waves> Waves::schema() {
-  Schema<Waves> s("waves", "Regular waves by a piston, from height, period and depth by linear theory.");
+  Schema<Waves> s("waves", "Regular waves by a piston, from height, period and depth.");
   s.required("height", &Waves::height, unit::length, "from trough to crest").above(0);
   s.required("period", &Waves::period, unit::time, "of the waves").above(0);
   s.required("depth", &Waves::depth, unit::length, "of the water at rest").above(0);
   s.optional("gravity", &Waves::gravity, unit::acceleration, "that the waves run under").above(0);
   s.optional("direction", &Waves::direction, unit::none, "that the waves run in, of any length");
+  s.optional("order", &Waves::order, unit::none, "of the theory: 1 linear, for low waves; 2 adds what a higher wave needs to keep its shape (Madsen 1971)").at_least(1).at_most(2);
   s.optional("ramp", &Waves::ramp, unit::time, "time in which the stroke grows from zero; auto: two periods").at_least(0);
   s.check([](Waves& w, CheckContext& c) {
     w.direction = direction_of(w.direction);
@@ -26,6 +27,11 @@ Schema<Waves> Waves::schema() {
     const double steepness = w.height * w.wave_number() / (2 * std::numbers::pi);
     if (steepness >= 0.142 * std::tanh(w.wave_number() * w.depth))
       c.error("height", fmt::format("waves of this period break when they are steeper than 0.142 tanh(kd); this one is {:.3g}", steepness), "a lower or a longer wave");
+    // With more than this the wave of second order has a second crest in its trough.
+    const double length = 2 * std::numbers::pi / w.wave_number(), ursell = w.height * length * length / std::pow(w.depth, 3);
+    const double highest = 8 * std::numbers::pi * std::numbers::pi / 3;
+    if (w.order == 2 && ursell >= highest)
+      c.error("order", fmt::format("H L^2 / d^3 is {:.3g}; the theory of second order holds below {:.3g}", ursell, highest), "order: 1, a lower or a shorter wave, or deeper water");
   });
   return s;
 }
@@ -49,11 +55,19 @@ double Waves::stroke() const {
   return height * ((1 - e2) / 2 + x * e) / (2 * ((1 + e2) / 2 - e));
 }
 
+double Waves::second_amplitude() const {
+  if (order < 2) return 0;
+  const double x = wave_number() * depth, s = std::sinh(x);
+  return height * height / (32 * depth) * (3 * std::cosh(x) / (s * s * s) - 2 * stroke() / height);
+}
+
 Vec3 Waves::displacement(double t) const {
   if (t <= 0) return Vec3::Zero();
   const double rise = ramp.value_or(2 * period);
   const double share = t < rise ? 0.5 * (1 - std::cos(std::numbers::pi * t / rise)) : 1;
-  return 0.5 * stroke() * share * std::sin(2 * std::numbers::pi * t / period) * direction;
+  const double phase = 2 * std::numbers::pi * t / period;
+  // What is of second order grows with the square of the height.
+  return (0.5 * stroke() * share * std::sin(phase) + second_amplitude() * share * share * std::sin(2 * phase)) * direction;
 }
 
 }  // namespace sphgeo

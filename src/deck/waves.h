@@ -1,5 +1,5 @@
 #pragma once
-// Regular waves by a piston that moves as linear theory says.
+// Regular waves by a piston that moves as linear theory or that of second order says.
 
 #include <optional>
 
@@ -15,6 +15,7 @@ struct Waves {
   double depth = 0;                 ///< d of the water at rest, m
   double gravity = 9.81;            ///< m/s2
   Vec3 direction = Vec3::UnitX();   ///< that the waves run in
+  Index order = 1;                  ///< of the theory: 1 linear, 2 Madsen's
   std::optional<double> ramp;       ///< in which the stroke grows from zero, s; empty: two periods
   static Schema<Waves> schema();
 
@@ -22,6 +23,9 @@ struct Waves {
   double wave_number() const;
   /// S of a piston: H / S = 2 (cosh 2kd - 1) / (sinh 2kd + 2kd) (Biesel; Dean and Dalrymple 1991, section 6.3), m.
   double stroke() const;
+  /// Amplitude of the motion with half the period that keeps a second, free wave from leaving the piston (Madsen 1971):
+  /// H^2 / (32 d) (3 cosh kd / sinh^3 kd - 2 S / H), m. 0 for order 1.
+  double second_amplitude() const;
   /// Of the piston at a time since its start, m.
   Vec3 displacement(double t) const;
 };

@@ -19,17 +19,17 @@ enum class Stage {
   predict,       ///< to the middle of the acoustic step (Eq. 96)
   force,         ///< accelerations at the middle (Eqs. 59, 60)
   kick,          ///< velocity and place at the end (Eqs. 97, 98)
-  rate,          ///< rates of density with the new velocity (Eq. 58)
-  correct,       ///< density at the end (Eq. 98)
   solid_predict, ///< kappa times per acoustic step: solids to the middle of their own step (Eq. 99)
   solid_force,   ///< their accelerations there (Eqs. 65, 79)
   solid_kick,    ///< their velocity and place at its end (Eqs. 100, 101)
-  solid_finish,  ///< once per acoustic step: what water and soil see of the solids (Eq. 95)
+  solid_finish,  ///< once per acoustic step: what water and soil see of the solids
+  rate,          ///< rates of density with the new velocities, also of the solids (Eq. 58)
+  correct,       ///< density at the end (Eq. 98)
   observe        ///< only when a probe or a frame is due
 };
 inline constexpr Stage all_stages[] = {Stage::exchange, Stage::reinitialize, Stage::predict, Stage::force, Stage::kick,
-                                       Stage::rate, Stage::correct, Stage::solid_predict, Stage::solid_force,
-                                       Stage::solid_kick, Stage::solid_finish, Stage::observe};
+                                       Stage::solid_predict, Stage::solid_force, Stage::solid_kick, Stage::solid_finish,
+                                       Stage::rate, Stage::correct, Stage::observe};
 const char* stage_name(Stage stage);
 
 /// read: the value is needed. write: set from scratch. add: summed onto a value that another effect
@@ -69,9 +69,16 @@ struct StepLimits {
   double advection = std::numeric_limits<double>::infinity();
   double acoustic = std::numeric_limits<double>::infinity();
   double solid = std::numeric_limits<double>::infinity();
+  const char* acoustic_by = "nothing";  ///< what bounds the acoustic step
   double mach = 0;       ///< largest |v| / c of any set; NaN when a velocity is no number
   std::string fastest;   ///< the set that holds it
 
+  /// `by` tells what asks for the bound.
+  void lower_acoustic(double bound, const char* by) {
+    if (!(bound < acoustic)) return;
+    acoustic = bound;
+    acoustic_by = by;
+  }
   void note_speed(const std::string& set, double speed_over_sound) {
     if (mach != mach || speed_over_sound <= mach) return;
     mach = speed_over_sound;

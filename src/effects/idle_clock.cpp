@@ -27,7 +27,7 @@ class IdleClock final : public Effect<Dim> {
     double step = model.run_interval();
     for (const auto& p : model.probes) step = std::min(step, model.probe_interval(*p));
     limits.advection = std::min(limits.advection, step);
-    limits.acoustic = std::min(limits.acoustic, step);
+    limits.lower_acoustic(step, "who wants to look");
   }
 };
 

@@ -84,7 +84,7 @@ class PorePressure final : public Effect<Dim> {
     const double sound = water_->constant("sound_speed") * std::sqrt(1 + (1 - least) / least * water_->constant("density") / lightest);
     const double rate = std::hypot(sound / water_->smoothing_length(), parts.fastest_wave / soil_->smoothing_length());
     const double bound = world.model().numerics.cfl_acoustic / rate;
-    limits.acoustic = std::min(limits.acoustic, bound);
+    limits.lower_acoustic(bound, "sound in the water of pores");
     limits.advection = std::min(limits.advection, world.model().numerics.advection_ratio_max * bound);
   }
 

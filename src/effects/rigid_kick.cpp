@@ -1,6 +1,8 @@
 #include <cmath>
+#include <optional>
 
 #include "core/parallel.h"
+#include "effects/light_solids.h"
 #include "effects/rigid_body.h"
 
 namespace sphgeo {
@@ -23,7 +25,7 @@ class RigidKick final : public Effect<Dim> {
   Needs needs() const override {
     return {{{set_name(), &fields::acceleration_sum, Access::read}, {set_name(), &fields::mass, Access::read},
              {set_name(), &fields::position, Access::update}, {set_name(), &fields::velocity, Access::update},
-             {set_name(), &fields::acceleration, Access::update}, {set_name(), &fields::mean_velocity, Access::update}}, {}};
+             {set_name(), &fields::acceleration, Access::update}}, {}};
   }
 
   void apply(World<Dim>& world) override {
@@ -48,6 +50,9 @@ class RigidKick final : public Effect<Dim> {
     const double step = n.cfl_solid * h / (sound_ + speed);
     limits.note_speed(set_name(), speed / sound_);
     limits.solid = std::min(limits.solid, step);
+    // Not before: a run that is resumed has no particles yet when it is prepared.
+    if (!beside_) beside_ = step_beside_light_solids(world, set_name());
+    limits.lower_acoustic(*beside_, "a solid lighter than what touches it");
     limits.advection = std::min(limits.advection, n.cfl_advection * h / std::max(speed, 1e-300));
     if (!world.find("water") && !world.find("soil")) limits.advection = std::min(limits.advection, n.advection_ratio_max * step);
   }
@@ -64,7 +69,6 @@ class RigidKick final : public Effect<Dim> {
     const auto& sum = set.vector(fields::acceleration_sum);
     const Field<Vec<Dim>>* fluid = set.has(fields::fluid_force) ? &set.vector(fields::fluid_force) : nullptr;
     auto& mean_a = set.vector(fields::acceleration);
-    auto& mean_v = set.vector(fields::mean_velocity);
     const auto& particles = bodies_.particles(body);
 
     RigidMotion motion = bodies_.motion(world, body);
@@ -76,18 +80,15 @@ class RigidKick final : public Effect<Dim> {
       torque += (to_space<Dim>(x[i]) - motion.center).cross(to_space<Dim>(f));
       // Until the new velocity is known, with the old one.
       mean_a[i] = (first ? Vec<Dim>(Vec<Dim>::Zero()) : mean_a[i]) - v[i] * (share / dt);
-      mean_v[i] = (first ? Vec<Dim>(Vec<Dim>::Zero()) : mean_v[i]) + (0.5 * share) * v[i];
     }
     motion.velocity += dt / motion.mass * force;
     motion.spin += dt * torque;
     bodies_.advance(set, particles, motion, 0.5 * dt);
-    for (const Index i : particles) {
-      mean_a[i] += v[i] * (share / dt);
-      mean_v[i] += (0.5 * share) * v[i];
-    }
+    for (const Index i : particles) mean_a[i] += v[i] * (share / dt);
   }
 
   RigidBodies<Dim> bodies_;
+  mutable std::optional<double> beside_;  // bound of the acoustic step, s
   double sound_ = 0;  // of the stiffest contact, m/s
 };
 

@@ -11,15 +11,14 @@ namespace sphgeo {
 /// The fields of a set of solids that its skin and what touches it need: lookups by name cost more than the work.
 template <int Dim>
 struct SolidFields {
-  Field<Vec<Dim>>&position, &velocity, &mean_velocity, &acceleration, &reference_position;
+  Field<Vec<Dim>>&position, &velocity, &reference_position;
   const Field<double>&mass, &reference_volume;
   const Field<std::int32_t>&part, &clamp;
   Field<Vec<Dim>>* acceleration_sum;  ///< null where nothing asks for it
   double smoothing_length;
 
   explicit SolidFields(ParticleSet<Dim>& s)
-      : position(s.vector(fields::position)), velocity(s.vector(fields::velocity)), mean_velocity(s.vector(fields::mean_velocity)),
-        acceleration(s.vector(fields::acceleration)), reference_position(s.vector(fields::reference_position)),
+      : position(s.vector(fields::position)), velocity(s.vector(fields::velocity)), reference_position(s.vector(fields::reference_position)),
         mass(s.scalar(fields::mass)), reference_volume(s.scalar(fields::reference_volume)), part(s.tag(fields::part)),
         clamp(s.tag(fields::clamp)), acceleration_sum(s.has(fields::acceleration_sum) ? &s.vector(fields::acceleration_sum) : nullptr),
         smoothing_length(s.smoothing_length()) {}

@@ -5,12 +5,16 @@
 namespace sphgeo {
 namespace {
 
-/// Takes the skin where its solids are, with velocity and acceleration averaged over their steps (Eq. 95).
+/// Takes the skin where its solids are at the end of the acoustic step.
+///
+/// Eq. 95 gives water and soil the velocity averaged over the steps of the solids. Their own density follows from velocities at both ends of
+/// the step (Eqs. 96 to 98); with an average beside them the surface is half a step late, and what is lighter than
+/// the water around it is thrown about by that (see light_solids.h).
 template <int Dim>
 class SkinFollow final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"skin_follow", Stage::solid_finish, "Eq. 95", "place, mean velocity and mean acceleration of the surface of solids", false};
+    return {"skin_follow", Stage::solid_finish, "Eq. 95", "place and velocity of the surface of solids", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("skin")) return {"no solid can meet anything"};
@@ -21,9 +25,9 @@ class SkinFollow final : public Effect<Dim> {
 
   std::string acts_on() const override { return "skin"; }
   Needs needs() const override {
-    Needs n{{{"skin", &fields::position, Access::update}, {"skin", &fields::velocity, Access::update}, {"skin", &fields::acceleration, Access::update}}, {}};
+    Needs n{{{"skin", &fields::position, Access::update}, {"skin", &fields::velocity, Access::update}}, {}};
     for (const std::string& set : solids_)
-      for (const FieldSpec* f : {&fields::position, &fields::mean_velocity, &fields::acceleration}) n.fields.push_back({set, f, Access::read});
+      for (const FieldSpec* f : {&fields::position, &fields::velocity}) n.fields.push_back({set, f, Access::read});
     return n;
   }
 
@@ -32,12 +36,10 @@ class SkinFollow final : public Effect<Dim> {
     ParticleSet<Dim>& skin = world.set("skin");
     auto& x = skin.vector(fields::position);
     auto& v = skin.vector(fields::velocity);
-    auto& a = skin.vector(fields::acceleration);
     parallel_for(skin.size(), [&](Index k) {
       const auto& [of, i] = map_.at(k);
       x[k] = of->position[i];
-      v[k] = of->mean_velocity[i];
-      a[k] = of->acceleration[i];
+      v[k] = of->velocity[i];
     });
     if (!seen_) return;
     pack_walls(world, "skin");

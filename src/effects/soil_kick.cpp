@@ -74,7 +74,7 @@ class SoilKick final : public Effect<Dim> {
     limits.note_speed("soil", speed / sound);
     // Eq. 92, with the compression wave: it is faster than the c_0 of Eq. 53, up to 1.7 times at nu = 0.
     const double acoustic = n.cfl_acoustic * h / (sound + speed);
-    limits.acoustic = std::min(limits.acoustic, acoustic);
+    limits.lower_acoustic(acoustic, "waves in soil");
     // Eq. 91; at rest the acoustic step bounds it, as for water.
     limits.advection = std::min(limits.advection, std::min(n.advection_ratio_max * acoustic, n.cfl_advection * h / std::max(speed, 1e-300)));
   }

@@ -25,7 +25,7 @@ class SolidKick final : public Effect<Dim> {
   Needs needs() const override {
     return {{{set_, &fields::acceleration_sum, Access::read}, {set_, &fields::clamp, Access::read},
              {set_, &fields::position, Access::update}, {set_, &fields::velocity, Access::update},
-             {set_, &fields::acceleration, Access::update}, {set_, &fields::mean_velocity, Access::update}}, {}};
+             {set_, &fields::acceleration, Access::update}}, {}};
   }
 
   void apply(World<Dim>& world) override {
@@ -37,7 +37,6 @@ class SolidKick final : public Effect<Dim> {
     auto& x = set.vector(fields::position);
     auto& v = set.vector(fields::velocity);
     auto& mean_a = set.vector(fields::acceleration);
-    auto& mean_v = set.vector(fields::mean_velocity);
     const auto& sum = set.vector(fields::acceleration_sum);
     const auto& m = set.scalar(fields::mass);
     const auto& reference = set.vector(fields::reference_position);
@@ -60,9 +59,8 @@ class SolidKick final : public Effect<Dim> {
         x[i] = motion ? to_scene<Dim>(motion->position(from, end)) : reference[i];
         v[i] = motion ? to_scene<Dim>(motion->velocity(from, end)) : Vec<Dim>::Zero();
       }
-      const Vec<Dim> rate = (v[i] - before) * (share / dt), speed = (0.5 * share) * (v[i] + before);
+      const Vec<Dim> rate = (v[i] - before) * (share / dt);
       mean_a[i] = first ? rate : Vec<Dim>(mean_a[i] + rate);
-      mean_v[i] = first ? speed : Vec<Dim>(mean_v[i] + speed);
     });
   }
 
@@ -91,7 +89,7 @@ class SolidKick final : public Effect<Dim> {
     limits.solid = std::min(limits.solid, step);
     // Not before: a run that is resumed has no particles yet when it is prepared.
     if (!beside_) beside_ = step_beside_light_solids(world, set_);
-    limits.acoustic = std::min(limits.acoustic, *beside_);
+    limits.lower_acoustic(*beside_, "a solid lighter than what touches it");
     limits.advection = std::min(limits.advection, n.cfl_advection * h / std::max(speed, 1e-300));
     // Alone, a solid has no configuration to update: how often somebody may look decides.
     if (!world.find("water") && !world.find("soil")) limits.advection = std::min(limits.advection, n.advection_ratio_max * step);

@@ -1,3 +1,6 @@
+#include <optional>
+#include <vector>
+
 #include "core/parallel.h"
 #include "boundaries/boundary.h"
 #include "effects/effect.h"
@@ -39,7 +42,11 @@ class WallMotion final : public Effect<Dim> {
             {}};
   }
 
-  void prepare(World<Dim>& world) override { walls_ = &world.set("walls"); }
+  void prepare(World<Dim>& world) override {
+    walls_ = &world.set("walls");
+    for (std::size_t k = 0; k < world.model().boundaries.size(); ++k)
+      motions_.push_back(motion_of(world.model(), static_cast<std::int32_t>(k)));
+  }
 
   void apply(World<Dim>& world) override {
     const double end = world.clock.time + world.clock.dt_acoustic;
@@ -51,20 +58,42 @@ class WallMotion final : public Effect<Dim> {
     auto& v = walls_->vector(fields::velocity);
     auto& a = walls_->vector(fields::acceleration);
     auto& n = walls_->vector(fields::normal);
-    parallel_for(walls_->size(), [&](Index i) {
-      const Motion* motion = motion_of(world.model(), part[i]);
-      if (!motion) return;
+    find_moving(world);
+    std::vector<std::optional<Motion::Moment>> moments(motions_.size());
+    for (std::size_t k = 0; k < motions_.size(); ++k)
+      if (motions_[k]) moments[k].emplace(*motions_[k], middle, end);
+    parallel_for(static_cast<Index>(moving_.size()), [&](Index place) {
+      const Index i = moving_[static_cast<std::size_t>(place)];
+      const Motion::Moment& motion = *moments[static_cast<std::size_t>(part[i])];
       const Vec3 from = to_space<Dim>(x0[i]);
-      x[i] = to_scene<Dim>(motion->position(from, end));
-      v[i] = to_scene<Dim>(motion->velocity(from, middle));
-      a[i] = to_scene<Dim>(motion->acceleration(from, middle));
-      n[i] = to_scene<Dim>(motion->direction(to_space<Dim>(n0[i]), end));
+      x[i] = to_scene<Dim>(motion.position(from));
+      v[i] = to_scene<Dim>(motion.velocity(from));
+      a[i] = to_scene<Dim>(motion.acceleration(from));
+      n[i] = to_scene<Dim>(motion.direction(to_space<Dim>(n0[i])));
     });
-    pack_walls(world);
-    if (!world.frozen_geometry()) world.pack_positions(*walls_);
+    pack_walls(world, "walls", &moving_);
+    if (world.frozen_geometry()) return;
+    world.with_pair_precision([&](auto number) {
+      auto& record = world.records("walls").template get<decltype(number)>();
+      for (const Index i : moving_) record.set_position(i, x[i]);
+    });
   }
+  std::size_t bytes() const override { return moving_.capacity() * sizeof(Index); }
 
  private:
+  /// Walls that rest share the set: those that move are looked up once per arrangement.
+  void find_moving(const World<Dim>& world) {
+    if (arrangement_ == world.arrangement()) return;
+    arrangement_ = world.arrangement();
+    moving_.clear();
+    const auto& part = walls_->tag(fields::part);
+    for (Index i = 0; i < walls_->size(); ++i)
+      if (motions_[static_cast<std::size_t>(part[i])]) moving_.push_back(i);
+  }
+
+  std::vector<const Motion*> motions_;  ///< by number of the boundary; null: it rests
+  std::vector<Index> moving_;
+  long arrangement_ = -1;
   ParticleSet<Dim>* walls_ = nullptr;
 };
 

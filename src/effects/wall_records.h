@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/parallel.h"
 #include "effects/wall_pair.h"
@@ -10,9 +11,10 @@
 
 namespace sphgeo {
 
-/// Writes both records of all particles of "walls", or of the "skin" of solids, from their fields (not the positions).
+/// Writes both records of particles of "walls", or of the "skin" of solids, from their fields (not the positions):
+/// of all, or of `those` alone.
 template <int Dim>
-void pack_walls(World<Dim>& world, const std::string& name = "walls") {
+void pack_walls(World<Dim>& world, const std::string& name = "walls", const std::vector<Index>* those = nullptr) {
   const ParticleSet<Dim>& walls = world.set(name);
   const double volume = std::pow(walls.spacing(), Dim);
   const Field<double>* own_volume = walls.has(fields::reference_volume) ? &walls.scalar(fields::reference_volume) : nullptr;
@@ -27,7 +29,8 @@ void pack_walls(World<Dim>& world, const std::string& name = "walls") {
     using T = decltype(number);
     auto& first = world.records(name, 0).template get<T>();
     auto& second = world.records(name, 1).template get<T>();
-    parallel_for(walls.size(), [&](Index i) {
+    parallel_for(those ? static_cast<Index>(those->size()) : walls.size(), [&](Index place) {
+      const Index i = those ? (*those)[static_cast<std::size_t>(place)] : place;
       T* one = first[i];
       T* two = second[i] - record_size;  // slots of the second record count on from the first
       one[wall_slot::volume] = static_cast<T>(own_volume ? (*own_volume)[i] : volume);

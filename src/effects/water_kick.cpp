@@ -70,7 +70,7 @@ class WaterKick final : public Effect<Dim> {
     const double speed = largest_speed(world);
     limits.note_speed("water", speed / w.sound_speed);
     const double acoustic = n.cfl_acoustic * h / (w.sound_speed + speed);  // Eq. 92
-    limits.acoustic = std::min(limits.acoustic, acoustic);
+    limits.lower_acoustic(acoustic, "sound in water");
     // Eq. 91. At rest h/|v| has no bound: then the acoustic step bounds it, by a ratio that equals
     // what Eqs. 91 and 92 give together at a tenth of the speed of sound.
     double advection = std::min(n.advection_ratio_max * acoustic, n.cfl_advection * h / std::max(speed, 1e-300));

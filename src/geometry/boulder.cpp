@@ -50,27 +50,26 @@ struct Boulder final : SceneShape {
     for (Wave& w : waves_) w.amplitude *= 2.5 * roughness / sum;
   }
 
-  double bumps(const Vec3& e) const {
-    double sum = 0;
-    for (const Wave& w : waves_) sum += w.amplitude * std::sin(w.k.dot(e) + w.phase);
-    return roughness > 0 ? roughness * std::tanh(sum / roughness) : 0;
-  }
   /// Radius less that of the surface, over the length of its gradient: exact to first order at the surface, where the
-  /// slope of the bumps tilts it.
+  /// slope of the bumps tilts it. The slope is that at the surface, also for points near the middle.
   double signed_distance(const Vec3& at) const override {
     Vec3 d = at - center;
     if (flat) d.y() = 0;
     const double r = d.norm();
     if (r < 1e-9 * radius) return -radius * (1 - roughness);
+    if (roughness <= 0) return r - radius;
     const Vec3 e = d / r;
-    const auto surface = [&](const Vec3& p) { return p.norm() - radius * (1 + bumps(p.normalized())); };
-    const double f = surface(d), step = 1e-4 * radius;
-    // The slope is that at the surface, also for points near the middle.
-    const Vec3 foot = radius * (1 + bumps(e)) * e;
-    Vec3 gradient = Vec3::Zero();
-    for (int k = 0; k < 3; ++k)
-      if (!flat || k != 1) gradient[k] = (surface(foot + step * Vec3::Unit(k)) - surface(foot - step * Vec3::Unit(k))) / (2 * step);
-    return f / gradient.norm();
+    double sum = 0;
+    Vec3 slope = Vec3::Zero();
+    for (const Wave& w : waves_) {
+      const double angle = w.k.dot(e) + w.phase;
+      sum += w.amplitude * std::sin(angle);
+      slope += w.amplitude * std::cos(angle) * w.k;
+    }
+    const double cut = std::tanh(sum / roughness), stretch = 1 + roughness * cut;
+    slope *= (1 - cut * cut) / stretch;
+    const double along = slope.dot(e);
+    return (r - radius * stretch) / std::sqrt(1 + slope.squaredNorm() - along * along);
   }
   Aabb box() const override {
     const double reach = radius * (1 + roughness);

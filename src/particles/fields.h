@@ -67,7 +67,6 @@ inline constexpr FieldSpec reference_volume{"reference_volume", scalar, referenc
 inline constexpr FieldSpec clamp{"clamp", tag, reference, unit::none, "index of the clamped region of its body, -1 where the body is free"};
 inline constexpr FieldSpec reference_correction{"reference_correction", tensor, derived, unit::none,
                                                 "inverse moment of the kernel gradient at rest, Eq. 66: xx, yy, zz, xy, yz, xz"};
-inline constexpr FieldSpec mean_velocity{"mean_velocity", vector, state, unit::speed, "velocity, averaged over the steps of solids in the last acoustic step"};
 inline constexpr FieldSpec source{"source", tag, reference, unit::none, "id of the particle of a solid that a particle of the skin follows"};
 inline constexpr FieldSpec source_set{"source_set", tag, reference, unit::none, "number of that solid's set"};
 // Saved: a probe that is due right after a run went on reads those of the step before.
@@ -90,7 +89,7 @@ inline constexpr const FieldSpec* all[] = {&id, &part, &position, &velocity, &ac
                                            &plastic_strain, &plastic_work, &water_acceleration, &pore_pressure, &saturation,
                                            &water_fraction, &soil_sum, &inverse_soil_mass, &drag_linear, &drag_quadratic,
                                            &pressure_force, &soil_velocity, &gradient_scale, &drag_acceleration,
-                                           &reference_volume, &clamp, &reference_correction, &mean_velocity, &fluid_force,
+                                           &reference_volume, &clamp, &reference_correction, &fluid_force,
                                            &source, &source_set, &water_force, &soil_force, &contact_force, &contact_energy,
                                            &cauchy_stress, &von_mises, &strain_energy};
 

@@ -187,7 +187,7 @@ StepLimits Plan<Dim>::limits() const {
   StepLimits limits;
   for (const auto& e : effects_) e.effect->limit(world_, limits);
   // Where solids are alone, the acoustic step is theirs.
-  if (limits.acoustic == std::numeric_limits<double>::infinity()) limits.acoustic = limits.solid;
+  if (limits.acoustic == std::numeric_limits<double>::infinity()) limits.lower_acoustic(limits.solid, "solids");
   const double factor = world_.model().numerics.time_step_factor;
   limits.advection *= factor;
   limits.acoustic *= factor;

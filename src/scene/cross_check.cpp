@@ -195,31 +195,6 @@ void check_switched_off(const Model& model, Diagnostics& found) {
   }
 }
 
-// What water does to a rigid body in one acoustic step acts on it through the whole step. A body that sound could cross in the
-// step, if it were water and as heavy, is thrown farther than the water can follow. Measured for squares, discs and balls of 5 to 10 spacings, of 0.01 to 0.2
-// of the density of water and at CFL numbers of 0.07 to 0.4: all run where the number below is at most 1, none where it is 1.6 or more.
-template <int Dim>
-void check_light_bodies(const World<Dim>& world, Diagnostics& found) {
-  const ParticleSet<Dim>* water = world.find("water");
-  if (!water) return;
-  const Model& model = world.model();
-  const double step = model.numerics.cfl_acoustic * model.numerics.time_step_factor * water->smoothing_length() / 1.8;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const SolidMaterial* solid = solid_of(model, model.bodies[b]);
-    if (!solid || !solid->rigid()) continue;
-    const Aabb box = model.bodies[b].shape->box();
-    double length = box.hi.x() - box.lo.x();
-    for (int k = 1; k < 3; ++k)
-      if (k == 2 || Dim == 3) length = std::min(length, box.hi[k] - box.lo[k]);
-    const double lightness = water->constant("density") * step / (solid->density * length);
-    if (!(lightness > 1.0)) continue;
-    const std::string path = fmt::format("bodies[{}]", b);
-    found.warning("W135", model.place_of(path), path,
-                  fmt::format("body '{}' is lighter than water can follow: as small and light as it is, what water does to it in one acoustic step throws it out", model.bodies[b].name),
-                  fmt::format("runs like it hold with numerics.cfl_acoustic at {:.2g} or less", model.numerics.cfl_acoustic / lightness));
-  }
-}
-
 // Measured at CFL numbers up to 1: water at rest, water that hits a ceiling and sand that collapses run at 0.8 and not at 1, a plate that
 // swings at 0.9 and not at 1.
 void check_steps(const Model& model, Diagnostics& found) {
@@ -254,7 +229,6 @@ void check_scene(const Scene<Dim>& scene, Diagnostics& found) {
     check_in_walls(world, *set, found);
   }
   check_coupling(world, found);
-  check_light_bodies(world, found);
   check_lengths(world, found);
   check_probes(world, found);
   check_walls(scene, found);

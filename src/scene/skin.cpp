@@ -80,7 +80,7 @@ void add_skin(Scene<Dim>& scene, const Model& model, Filling filling) {
     }
   // A quarter more than a kernel: lists of contacts hold for an advection step, in which two bodies may come 0.4 h closer.
   ParticleSet<Dim>& skin = world.add_set("skin", "wall", spacing, 1.25 * h, true);
-  for (const FieldSpec* f : {&fields::normal, &fields::reference_normal, &fields::no_slip, &fields::acceleration, &fields::source,
+  for (const FieldSpec* f : {&fields::normal, &fields::reference_normal, &fields::no_slip, &fields::source,
                              &fields::source_set, &fields::reference_volume})
     skin.require(*f);
   if (filling == Filling::none) return;

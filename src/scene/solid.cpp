@@ -47,7 +47,7 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
     set.tag(fields::clamp)[i] = clamp;
     set.vector(fields::position)[i] = to_scene<Dim>(place);
     set.vector(fields::reference_position)[i] = to_scene<Dim>(at);
-    set.vector(fields::velocity)[i] = set.vector(fields::mean_velocity)[i] = to_scene<Dim>(v);
+    set.vector(fields::velocity)[i] = to_scene<Dim>(v);
     set.scalar(fields::reference_volume)[i] = volume;
     set.scalar(fields::mass)[i] = solid.density * volume;
   }
@@ -87,7 +87,7 @@ void add_solids(Scene<Dim>& scene, const Model& model, Filling filling, Diagnost
   for (std::size_t k = 0; k < spacings.size(); ++k) {
     const std::string name = solid_set_name(k);
     ParticleSet<Dim>& set = scene.world->add_solids(name, spacings[k], model.numerics.h_factor_solid.value_or(1.15) * spacings[k]);
-    for (const FieldSpec* f : {&fields::clamp, &fields::acceleration, &fields::mean_velocity}) set.require(*f);
+    for (const FieldSpec* f : {&fields::clamp, &fields::acceleration}) set.require(*f);
     if (filling == Filling::none) continue;
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
       const SolidMaterial* solid = solid_of(model, model.bodies[b]);

@@ -64,15 +64,17 @@ void Stepper<Dim>::acoustic_step(double dt, double solid_limit) {
   plan_.run(Stage::predict);   // Eq. 96
   plan_.run(Stage::force);     // Eq. 60
   plan_.run(Stage::kick);      // Eqs. 97, 98
+  // Algorithm 2 moves the solids last. Then water and soil would be compressed by the solids of the step before, and that delay
+  // feeds energy to whatever is lighter than they are (see light_solids.h).
+  if (solid_limit < std::numeric_limits<double>::infinity()) solid_steps(dt, solid_limit);
   plan_.run(Stage::rate);      // Eq. 58
   plan_.run(Stage::correct);   // Eq. 98
-  if (solid_limit < std::numeric_limits<double>::infinity()) solid_steps(dt, solid_limit);
   ++world_.clock.acoustic_steps;
   for (const auto& set : world_.sets())
     if (set->phase() == "water" || set->phase() == "soil") particle_updates_ += static_cast<double>(set->size());
 }
 
-// Lines 19 to 25. Their number is fixed here, so that the averages of Eq. 95 are exact.
+// Lines 19 to 25. Their number is fixed here, so that the average of Eq. 95 is exact.
 template <int Dim>
 void Stepper<Dim>::solid_steps(double dt, double limit) {
   Clock& clock = world_.clock;
@@ -87,7 +89,7 @@ void Stepper<Dim>::solid_steps(double dt, double limit) {
       if (set->phase() == "solid") particle_updates_ += static_cast<double>(set->size());
   }
   clock.solid_step = 0;
-  plan_.run(Stage::solid_finish);     // Eq. 95
+  plan_.run(Stage::solid_finish);
 }
 
 template <int Dim>

@@ -90,6 +90,8 @@ boundaries: [{name: ground, type: wall, shape: {type: box, min: [-1, -1, -0.5], 
         taken = self.write("taken.yaml", (self.here / "solid.yaml").read_text().replace("{type: sphere, center: [0, 0, 1], radius: 0.5}", "{type: stl, file: ball.stl}"))
         self.assertIn("the deck is sound", self.accepted("check", taken, "--no-calibrate").stdout)
         self.accepted("export", deck, "ground", "-o", "ground.stl", "--spacing", "0.2")
+        self.refused(2, "ground.stl exists; --overwrite replaces it", "export", deck, "ground", "-o", "ground.stl")
+        self.accepted("export", deck, "ground", "-o", "ground.stl", "--overwrite")
         self.refused(2, ["no body and no wall of the deck is named 'bal'", "did you mean 'ball'?"], "export", deck, "bal", "-o", "x.stl")
         self.refused(2, "STL is for scenes in 3D", "export", deck, "ball", "-o", "x.stl", "--set", "dimension=2")
         self.refused(2, "is no length above zero", "export", deck, "ball", "-o", "x.stl", "--spacing=-1")

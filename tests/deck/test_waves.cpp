@@ -43,4 +43,27 @@ TEST_SUITE("deck") {
     CHECK(w.displacement(10.25).x() == doctest::Approx(0.5 * w.stroke()));
     CHECK(w.displacement(10.75).x() == doctest::Approx(-0.5 * w.stroke()));
   }
+
+  TEST_CASE("second order: grows with the square of the height, adds nothing in deep water, sharpens the push of long waves") {
+    Waves w;
+    w.height = 0.32;
+    w.period = 2;
+    w.depth = 0.7;
+    CHECK(w.second_amplitude() == 0);
+    const Vec3 first = w.displacement(12.1);
+    w.order = 2;
+    CHECK((w.displacement(12.1) - first).x() == doctest::Approx(w.second_amplitude() * std::sin(4 * std::numbers::pi * 0.05)));
+    const double high = w.second_amplitude();
+    CHECK(high > 0);
+    w.height = 0.16;
+    CHECK(w.second_amplitude() == doctest::Approx(high / 4));
+    // Long waves: the piston follows the water, dX/dt = c eta / (d + eta) (Goring). Of its second harmonic H^2 / d (3 / (32 (kd)^3)
+    // belongs to Stokes' second crest; the rest is of the order of 1 / kd.
+    w.period = 60;
+    const double kd = w.wave_number() * w.depth;
+    CHECK(w.second_amplitude() == doctest::Approx(3 * w.height * w.height / (32 * w.depth * kd * kd * kd)).epsilon(2 * kd * kd));
+    // Deep water: what is left of it is -1/32 H^2 / d.
+    w.period = 0.4;
+    CHECK(w.second_amplitude() == doctest::Approx(-w.height * w.height / (32 * w.depth)).epsilon(1e-3));
+  }
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "plan/plan.h"
 #include "scene/cross_check.h"
 #include "support/rig.h"
 
@@ -276,9 +277,9 @@ boundaries:
   }
 }
 
-TEST_CASE("an acoustic step too long, for all or for a rigid body that is light in water: a warning with one that would do") {
-  const auto warned = [](const std::string& density, const std::string& cfl) {
-    const Model model = read_deck_text(R"(
+TEST_CASE("an acoustic step too long for all: a warning; too long for a light rigid body: its own bound") {
+  const auto scene_of = [](const std::string& density, const std::string& cfl) {
+    return read_deck_text(R"(
 dimension: 2
 resolution: 0.04
 end_time: 1
@@ -290,17 +291,31 @@ bodies:
   - {name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [0.8, 0.2, 0.4]}}
   - {name: float, material: foam, shape: {type: box, min: [0.2, 0, 0.48], max: [0.4, 0.2, 0.68]}}
 )", {}, "deck", SPHGEO_SOURCE_DIR);
+  };
+  const auto warned = [&](const std::string& cfl) {
+    const Model model = scene_of("2600", cfl);
     Diagnostics found;
-    const Scene<2> scene = build_scene<2>(model, found);
-    check_scene(scene, found);
+    check_scene(build_scene<2>(model, found), found);
     for (const Diagnostic& d : found.items())
-      if (d.id == "W135" || d.id == "W136") return d.help;
+      if (d.id == "W136") return d.help;
     return std::string("silent");
   };
-  CHECK(warned("200", "0.4") == "silent");
-  CHECK(warned("2600", "0.95") == "most hold at 0.8 or less");
-  CHECK(warned("20", "0.4").find("cfl_acoustic at 0.1 or less") != std::string::npos);
-  CHECK(warned("20", "0.09") == "silent");
+  CHECK(warned("0.4") == "silent");
+  CHECK(warned("0.95") == "most hold at 0.8 or less");
+
+  const auto limits = [&](const std::string& density) {
+    const Model model = scene_of(density, "0.4");
+    Diagnostics found;
+    Scene<2> scene = build_scene<2>(model, found);
+    Plan<2> plan(*scene.world, {});
+    scene.world->rearrange();
+    return plan.limits();
+  };
+  CHECK(std::string(limits("2600").acoustic_by) == "sound in water");
+  CHECK(limits("2600").acoustic == doctest::Approx(0.4 * 1.8 * 0.04 / 50));
+  CHECK(std::string(limits("20").acoustic_by) == "a solid lighter than what touches it");
+  // dp 0.04 m, L = 1000 dp / (20 * 0.2 m) = 10
+  CHECK(limits("20").acoustic == doctest::Approx(0.9 * 0.04 / 50 / std::sqrt(10)));
 }
 
 }
