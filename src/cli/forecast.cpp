@@ -168,7 +168,7 @@ void refuse(const Model& model, double available) {
   spacing = std::ceil(spacing / digit) * digit;
   const ParticleCounts counts = expected_particles(model);
   Diagnostics found;
-  found.error("E113", model.place_of("resolution"), "resolution",
+  found.error("E145", model.place_of("resolution"), "resolution",
               largest_of(counts) > largest_set && need(model) <= available
                   ? fmt::format("the scene takes about {:.3g} particles; a set holds at most {:.3g}", total_of(counts), largest_set)
                   : fmt::format("the scene takes about {:.3g} particles and {} of memory; {} are available", total_of(counts),

@@ -181,7 +181,7 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
       parts.back().points = wall->points(placement);
     } catch (const Error& e) {
       const std::string path = fmt::format("boundaries[{}]", b);
-      found.error("E116", model.place_of(path), path, e.what());
+      found.error("E144", model.place_of(path), path, e.what());
     }
   }
   const double g = model.gravity.norm();

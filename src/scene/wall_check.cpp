@@ -51,8 +51,10 @@ void check_solid(const Scene<Dim>& scene, const Solid& s, Diagnostics& found) {
   }
   const auto filled = std::find_if(scene.boundary_particles.begin(), scene.boundary_particles.end(),
                                    [&](const auto& p) { return p.first == s.wall->name; });
-  if (filled != scene.boundary_particles.end() && filled->second == 0)
-    found.error("E115", model.place_of(s.path), s.path, fmt::format("boundary '{}' holds no particle: water passes through it", s.wall->name),
+  // A tank of which front and back alone are closed is nothing in 2D, and need not be anything.
+  const bool across = Dim == 2 && s.wall->open_faces({model.resolution, support_radius(model), 2}).size() == 4;
+  if (filled != scene.boundary_particles.end() && filled->second == 0 && !across)
+    found.error("E143", model.place_of(s.path), s.path, fmt::format("boundary '{}' holds no particle: water passes through it", s.wall->name),
                 fmt::format("make it at least one spacing ({} m) thick, or refine the resolution", model.resolution));
   if (!s.shape || s.shape->type != "box") return;
   const Aabb box = s.shape->box();

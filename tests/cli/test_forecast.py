@@ -96,7 +96,7 @@ class Forecast(unittest.TestCase):
                 self.assertEqual(done.stdout, "")
                 # Sizes beyond all reason are refused with the boundary that asks for them, before memory is counted.
                 texts = ("E030", "resolution", "particles") if "E030" in done.stderr else (
-                    "E113", "resolution", "particles", "are available", "would fit")
+                    "E145", "resolution", "particles", "are available", "would fit")
                 for text in texts:
                     self.assertIn(text, done.stderr)
 

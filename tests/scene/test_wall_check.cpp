@@ -44,7 +44,8 @@ const std::string ground = "boundaries:\n" + wall("floor", box("-1, 0, -0.2", "2
 TEST_SUITE("scene") {
   TEST_CASE("a wall too thin to hold a particle is an error") {
     CHECK(findings(pool + ground).empty());
-    CHECK(findings(pool + ground + wall("sheet", box("0.5, 0, 0", "0.52, 1, 0.5"))) == Ids{"E115"});
+    CHECK(findings(pool + ground + wall("sheet", box("0.5, 0, 0", "0.52, 1, 0.5"))) == Ids{"E143"});
+    CHECK(findings(pool + ground + "  - {name: sides, type: tank, min: [0, 0, 0], max: [1, 1, 1], open: [left, right, bottom, top]}\n").empty());
   }
 
   TEST_CASE("a box-shaped wall that is no multiple of the spacing is found, in the plane of the scene") {
