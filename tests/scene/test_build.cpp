@@ -315,7 +315,7 @@ bodies:
   CHECK(limits("2600").acoustic == doctest::Approx(0.4 * 1.8 * 0.04 / 50));
   CHECK(std::string(limits("20").acoustic_by) == "a solid lighter than what touches it");
   // dp 0.04 m, L = 1000 dp / (20 * 0.2 m) = 10
-  CHECK(limits("20").acoustic == doctest::Approx(0.9 * 0.04 / 50 / std::sqrt(10)));
+  CHECK(limits("20").acoustic == doctest::Approx(0.8 * 0.04 / 50 / std::sqrt(10)));
 }
 
 }
