@@ -66,10 +66,8 @@ double step_beside_light_solids(const World<Dim>& world, const std::string& set_
       const double moved = body.elastic ? std::min(thickness, m.spacing) : thickness;
       const double lightness = m.density * m.spacing / (body.material->density * moved);
       bound = std::min(bound, 0.8 * m.spacing / (m.sound * std::sqrt(lightness)));
-      if (body.elastic && lightness > 2) {
-        const Numerics& n = world.model().numerics;
-        bound = std::min(bound, 1.5 * (n.solid_gradient == "quadratic" ? 0.7 : 1.0) * n.cfl_solid * set.smoothing_length() / body.wave_speed);
-      }
+      if (body.elastic && lightness > 2)
+        bound = std::min(bound, 1.5 * solid_courant(world.model().numerics) * set.smoothing_length() / body.wave_speed);
     }
   }
   return bound;

@@ -83,9 +83,7 @@ class SolidKick final : public Effect<Dim> {
     const double pull = std::sqrt(block_max(set.size(), [&](Index i) { return a[i].squaredNorm(); }, 0.0));
     limits.note_speed(set_, speed / slowest_);
     // Eq. 94, with the compression wave: c_0 of Eq. 53 is slower, by 1.7 times at nu = 0.
-    // Weights of one side only, at corners, see short waves twice as well.
-    const double sharper = n.solid_gradient == "quadratic" ? 0.7 : 1.0;
-    const double step = sharper * n.cfl_solid * std::min(h / (sound_ + speed), std::sqrt(h / std::max(pull, 1e-300)));
+    const double step = solid_courant(n) * std::min(h / (sound_ + speed), std::sqrt(h / std::max(pull, 1e-300)));
     limits.solid = std::min(limits.solid, step);
     // Not before: a run that is resumed has no particles yet when it is prepared.
     if (!beside_) beside_ = step_beside_light_solids(world, set_);

@@ -17,6 +17,9 @@
 
 namespace sphgeo {
 
+/// CFL number of elastic solids (Eq. 94). With the quadratic gradient, weights of one side only, at corners, see short waves twice as well.
+inline double solid_courant(const Numerics& n) { return (n.solid_gradient == "quadratic" ? 0.7 : 1.0) * n.cfl_solid; }
+
 /// Parameters of one body, SI.
 struct SolidPart {
   const SolidMaterial* material = nullptr;  ///< null for a body that is no solid
