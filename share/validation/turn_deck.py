@@ -214,16 +214,33 @@ class Rewrite:
         motion["displacement"] = self.change.vector(motion["displacement"])
         motion["center"] = self.change.vector(motion["center"])
         motion["axis"] = self.change.axial(motion["axis"])
+        if given(motion.get("waves")):
+            motion["waves"]["direction"] = self.change.vector(motion["waves"]["direction"])
 
     def boundary(self, wall):
         if wall["type"] == "tank":
             shape = self.walls_of(wall)
             wall = {"type": "wall", "name": wall["name"], "shape": shape, "slip": wall["slip"], "motion": wall.get("motion", "auto")}
+        elif wall["type"] in ("inlet", "reservoir", "outlet"):
+            return self.crossed(wall)
         elif wall["type"] != "wall":
             raise NotApplicable(f"a boundary of type {wall['type']}")
         wall["shape"] = self.change.shape(wall["shape"])
         self.motion(wall)
         return wall
+
+    def crossed(self, boundary):
+        """A boundary that particles cross."""
+        kind = boundary["type"]
+        if self.change.word == "turned" and kind != "outlet":
+            raise NotApplicable(f"an {kind} lies along the axes" if kind == "inlet" else "a reservoir holds a level in z")
+        if kind == "inlet":
+            boundary["min"], boundary["max"] = self.change.vector(boundary["min"]), self.change.vector(boundary["max"])
+            boundary["min"][0], boundary["max"][0] = sorted((boundary["min"][0], boundary["max"][0]))
+            boundary["velocity"] = self.change.vector([formula(self.change, f) for f in boundary["velocity"]])
+        else:
+            boundary["shape"] = self.change.shape(boundary["shape"])
+        return boundary
 
     def walls_of(self, tank):
         """The tank as a difference of boxes; an open face stays open."""
@@ -258,7 +275,7 @@ class Rewrite:
         turned = change.word == "turned"
         if any(given(probe.get(k)) for k in ("region_min", "region_max")):
             return None
-        if kind in ("energy", "amount", "penetration", "moments", "body_force", "force"):
+        if kind in ("energy", "amount", "penetration", "moments", "body_force", "force", "exchange"):
             return probe
         if kind in ("pressure", "velocity", "stress", "material_point"):
             probe["at"] = change.vector(probe["at"])

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -5,6 +6,7 @@
 #include "boundaries/boundary.h"
 #include "effects/effect.h"
 #include "effects/wall_records.h"
+#include "effects/wave_absorption.h"
 
 namespace sphgeo {
 namespace {
@@ -14,6 +16,22 @@ const Motion* motion_of(const Model& model, std::int32_t part) {
   const auto* wall = dynamic_cast<const WallBoundary*>(model.boundaries[static_cast<std::size_t>(part)].get());
   return wall && wall->motion ? &*wall->motion : nullptr;
 }
+
+/// A step of what a piston moves beside that to take up waves (see wave_absorption.cpp): zero for every other wall.
+struct Extra {
+  Vec3 shift = Vec3::Zero(), velocity = Vec3::Zero(), acceleration = Vec3::Zero();  // at the end, the middle and the middle of the step
+
+  Extra() = default;
+  /// Brings the piston nearer to the speed that it is to have.
+  Extra(PistonState state, const Vec3& direction, double dt) {
+    const double before = state.speed;
+    if (state.lag > 0) state.speed += (state.wanted - before) * -std::expm1(-dt / state.lag);
+    state.shift += 0.5 * (before + state.speed) * dt;
+    shift = state.shift * direction;
+    velocity = 0.5 * (before + state.speed) * direction;
+    acceleration = (state.speed - before) / dt * direction;
+  }
+};
 
 /// Walls whose motion the deck prescribes: place at the end of the step, velocity and acceleration
 /// at its middle.
@@ -60,15 +78,22 @@ class WallMotion final : public Effect<Dim> {
     auto& n = walls_->vector(fields::normal);
     find_moving(world);
     std::vector<std::optional<Motion::Moment>> moments(motions_.size());
-    for (std::size_t k = 0; k < motions_.size(); ++k)
-      if (motions_[k]) moments[k].emplace(*motions_[k], middle, end);
+    std::vector<Extra> extras(motions_.size());
+    for (std::size_t k = 0; k < motions_.size(); ++k) {
+      if (!motions_[k]) continue;
+      moments[k].emplace(*motions_[k], middle, end);
+      const auto& waves = motions_[k]->waves;
+      if (waves && waves->absorb) extras[k] = Extra(PistonState(world, world.model().boundaries[k]->name), waves->direction, world.clock.dt_acoustic);
+    }
     parallel_for(static_cast<Index>(moving_.size()), [&](Index place) {
       const Index i = moving_[static_cast<std::size_t>(place)];
-      const Motion::Moment& motion = *moments[static_cast<std::size_t>(part[i])];
+      const auto mover = static_cast<std::size_t>(part[i]);
+      const Motion::Moment& motion = *moments[mover];
+      const Extra& extra = extras[mover];
       const Vec3 from = to_space<Dim>(x0[i]);
-      x[i] = to_scene<Dim>(motion.position(from));
-      v[i] = to_scene<Dim>(motion.velocity(from));
-      a[i] = to_scene<Dim>(motion.acceleration(from));
+      x[i] = to_scene<Dim>(motion.position(from) + extra.shift);
+      v[i] = to_scene<Dim>(motion.velocity(from) + extra.velocity);
+      a[i] = to_scene<Dim>(motion.acceleration(from) + extra.acceleration);
       n[i] = to_scene<Dim>(motion.direction(to_space<Dim>(n0[i])));
     });
     pack_walls(world, "walls", &moving_);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "probes/scene_view.h"
+#include "sph/surface_height.h"
 
 namespace sphgeo {
 
@@ -33,16 +34,7 @@ inline std::vector<std::optional<double>> surface_heights(const SceneView& scene
       scene.near(set, {places[k].x(), places[k].y(), z}, [&](Index i, double w) { sum += volume(i) * w; });
       return sum;
     };
-    // From the highest particle of the neighborhood down to the first half-filled kernel.
-    double above = 0;
-    for (double z = top[k] + 2 * dp; z > bottom[k] - dp; z -= 0.25 * dp) {
-      const double here = filled(z);
-      if (here >= 0.5) {
-        heights[k] = z + 0.25 * dp * (here - 0.5) / std::max(here - above, 1e-12);
-        break;
-      }
-      above = here;
-    }
+    heights[k] = surface_height(top[k], bottom[k], dp, filled);
   }
   return heights;
 }

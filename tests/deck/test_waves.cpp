@@ -66,4 +66,42 @@ TEST_SUITE("deck") {
     w.period = 0.4;
     CHECK(w.second_amplitude() == doctest::Approx(-w.height * w.height / (32 * w.depth)).epsilon(1e-3));
   }
+
+  TEST_CASE("what stays near the piston holds what it displaces beyond what runs away") {
+    Waves w;
+    w.height = 0.05;
+    w.period = 1.4;
+    w.depth = 0.4;
+    // Its volume is that displaced, d per metre of stroke, less what the progressive wave carries past the piston.
+    double volume = 0;
+    const double step = 1e-4;
+    for (int k = 0; k < 40000; ++k) volume += step * w.evanescent((k + 0.5) * step);
+    CHECK(volume == doctest::Approx(w.depth - w.height / (w.stroke() * w.wave_number())).epsilon(1e-3));
+    CHECK(w.evanescent(3) == doctest::Approx(0).epsilon(1e-6));
+  }
+
+  TEST_CASE("far from the piston a low wave is what was asked for; one of second order has a higher crest") {
+    Waves w;
+    w.height = 0.05;
+    w.period = 1.4;
+    w.depth = 0.4;
+    const double length = 2 * std::numbers::pi / w.wave_number(), t = 10 * w.period;
+    CHECK(w.elevation(4 * length, t) == doctest::Approx(0.025));
+    CHECK(w.elevation(4.5 * length, t) == doctest::Approx(-0.025));
+    CHECK(w.elevation(4 * length, 0) == 0);
+    w.order = 2;
+    CHECK(w.elevation(4 * length, t) > 0.026);
+    // The range between crest and trough is the height in both.
+    CHECK(w.elevation(4 * length, t) - w.elevation(4.5 * length, t) == doctest::Approx(0.05));
+  }
+
+  TEST_CASE("a piston takes up waves by sqrt(g / d) in shallow water, by omega / 2 in deep") {
+    Waves w;
+    w.height = 0.01;
+    w.period = 30;
+    w.depth = 1;
+    CHECK(w.absorbing_rate() == doctest::Approx(std::sqrt(9.81)).epsilon(0.002));
+    w.depth = 1e5;
+    CHECK(w.absorbing_rate() == doctest::Approx(std::numbers::pi / 30));
+  }
 }
