@@ -59,14 +59,18 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   }
   const int reach = name.size() < 4 ? 1 : 2;
   int best = reach + 1;
+  std::size_t alike = 0;  // characters at the beginning; of names equally near, the one that starts more like it is meant
   std::string found;
   for (const std::string& c : candidates) {
     const std::size_t longer = std::max(name.size(), c.size()), shorter = std::min(name.size(), c.size());
     if (longer - shorter > static_cast<std::size_t>(reach)) continue;  // that many edits at least
     // A name may not be replaced as a whole: "t" is no misspelling of "x".
     const int d = edit_distance(name, c);
-    if (d < best && d < static_cast<int>(std::max(name.size(), c.size()))) {
+    if (d > best || d > reach || d >= static_cast<int>(longer)) continue;
+    const auto same = static_cast<std::size_t>(std::mismatch(name.begin(), name.end(), c.begin(), c.end()).first - name.begin());
+    if (d < best || same > alike) {
       best = d;
+      alike = same;
       found = c;
     }
   }

@@ -68,7 +68,7 @@ struct SoilWallPair {
     const T apart = T(near) + T(0.5) * wall[wall_slot::yields] * (wall[wall_slot::near] - T(near));
     const T contact = bulk * (T(per_spacing) * max(T(0), apart * (T(0.7) + T(0.3) * face) - length(r2)));
     const T height = face * max(T(0), r_n);
-    const T rise = soil[slot::borne<Dim>] * soil[slot::density<Dim>] * wall[wall_slot::push] * height;
+    const T rise = soil[slot::borne<Dim>] * soil[slot::density<Dim>] * max(T(0), wall[wall_slot::push]) * height;
     T tensor[Dim * Dim];
     unpack_stress(soil, tensor);
     const LaneVec<Dim, T> on_wall = times(tensor, (face * r_n) * n);

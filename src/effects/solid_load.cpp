@@ -5,7 +5,8 @@ namespace sphgeo {
 namespace {
 
 /// Hands the forces of water and soil from the skin to the solids, where they act through all steps of solids in the
-/// acoustic step.
+/// acoustic step. Their means over the advection step are what a probe shows: each rearrangement shakes the pressure, the steps after it
+/// calm it down, and the last of them alone is some percent off the force that moved the body.
 template <int Dim>
 class SolidLoad final : public Effect<Dim> {
  public:
@@ -23,10 +24,13 @@ class SolidLoad final : public Effect<Dim> {
   std::string acts_on() const override { return "solids"; }
   Needs needs() const override {
     Needs n;
-    if (water_) n.fields.push_back({"skin", &fields::water_force, Access::read});
-    if (soil_) n.fields.push_back({"skin", &fields::soil_force, Access::read});
+    if (water_) n.fields.insert(n.fields.end(), {{"skin", &fields::water_force, Access::read}, {"skin", &fields::mean_water_force, Access::update}});
+    if (soil_) n.fields.insert(n.fields.end(), {{"skin", &fields::soil_force, Access::read}, {"skin", &fields::mean_soil_force, Access::update}});
     for (const std::string& set : solids_) n.fields.push_back({set, &fields::fluid_force, Access::write});
     return n;
+  }
+  void prepare(World<Dim>& world) override {
+    for (const char* name : {step_, time_}) world.kept(name);
   }
   void apply(World<Dim>& world) override {
     map_.update(world);
@@ -35,18 +39,35 @@ class SolidLoad final : public Effect<Dim> {
       force.push_back(&world.set(set).vector(fields::fluid_force));
       parallel_for(force.back()->size(), [&](Index i) { (*force.back())[i].setZero(); });
     }
-    const ParticleSet<Dim>& skin = world.set("skin");
+    ParticleSet<Dim>& skin = world.set("skin");
     const auto& number = skin.tag(fields::source_set);
-    const auto add = [&](const FieldSpec& field) {
+    const double share = share_of_mean(world);
+    const auto add = [&](const FieldSpec& field, const FieldSpec& mean_field) {
       const auto& by = skin.vector(field);
-      parallel_for(skin.size(), [&](Index s) { (*force[static_cast<std::size_t>(number[s])])[map_.at(s).i] += by[s]; });
+      auto& mean = skin.vector(mean_field);
+      parallel_for(skin.size(), [&](Index s) {
+        (*force[static_cast<std::size_t>(number[s])])[map_.at(s).i] += by[s];
+        mean[s] += share * (by[s] - mean[s]);
+      });
     };
-    if (water_) add(fields::water_force);
-    if (soil_) add(fields::soil_force);
+    if (water_) add(fields::water_force, fields::mean_water_force);
+    if (soil_) add(fields::soil_force, fields::mean_soil_force);
   }
   std::size_t bytes() const override { return map_.bytes(); }
 
  private:
+  /// Of this acoustic step in the time since the advection step began.
+  static double share_of_mean(World<Dim>& world) {
+    double &step = world.kept(step_), &time = world.kept(time_);
+    const auto now = static_cast<double>(world.clock.advection_steps);
+    if (step != now) time = 0;
+    step = now;
+    time += world.clock.dt_acoustic;
+    return world.clock.dt_acoustic / time;
+  }
+
+  static constexpr const char* step_ = "solid_load/step";
+  static constexpr const char* time_ = "solid_load/time";
   std::vector<std::string> solids_;
   bool water_, soil_;
   SkinMap<Dim> map_;

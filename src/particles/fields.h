@@ -72,6 +72,8 @@ inline constexpr FieldSpec source_set{"source_set", tag, reference, unit::none, 
 // Saved: a probe that is due right after a run went on reads those of the step before.
 inline constexpr FieldSpec water_force{"water_force", vector, state, unit::force, "force of water on a particle of the skin"};
 inline constexpr FieldSpec soil_force{"soil_force", vector, state, unit::force, "force of soil on a particle of the skin"};
+inline constexpr FieldSpec mean_water_force{"mean_water_force", vector, state, unit::force, "water_force, mean over the advection step"};
+inline constexpr FieldSpec mean_soil_force{"mean_soil_force", vector, state, unit::force, "soil_force, mean over the advection step"};
 inline constexpr FieldSpec contact_force{"contact_force", vector, state, unit::force, "force of other solids and of walls on a particle of the skin"};
 inline constexpr FieldSpec contact_energy{"contact_energy", scalar, state, unit::energy, "energy stored in the contacts of a particle of the skin; J per metre of depth in 2D"};
 inline constexpr FieldSpec fluid_force{"fluid_force", vector, derived, unit::force, "force of water and soil on a particle of a solid"};
@@ -90,7 +92,7 @@ inline constexpr const FieldSpec* all[] = {&id, &part, &position, &velocity, &ac
                                            &water_fraction, &soil_sum, &inverse_soil_mass, &drag_linear, &drag_quadratic,
                                            &pressure_force, &soil_velocity, &gradient_scale, &drag_acceleration,
                                            &reference_volume, &clamp, &reference_correction, &fluid_force,
-                                           &source, &source_set, &water_force, &soil_force, &contact_force, &contact_energy,
+                                           &source, &source_set, &water_force, &soil_force, &mean_water_force, &mean_soil_force, &contact_force, &contact_energy,
                                            &cauchy_stress, &von_mises, &strain_energy};
 
 }  // namespace sphgeo::fields

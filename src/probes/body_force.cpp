@@ -15,7 +15,7 @@ struct BodyForceProbe final : Probe {
   std::string body;
 
   static Schema<BodyForceProbe> schema() {
-    Schema<BodyForceProbe> s("body_force", "force and torque on a solid by water, soil and contact (Eqs. 70, 75-79); torques about its centre of mass");
+    Schema<BodyForceProbe> s("body_force", "force and torque on a solid by water, soil (means over the advection step) and contact (Eqs. 70, 75-79); torques about its centre of mass");
     s.required("body", &BodyForceProbe::body, unit::none, "name of the body");
     return s;
   }
@@ -24,7 +24,7 @@ struct BodyForceProbe final : Probe {
     const char* name;
     const FieldSpec* field;
   };
-  static constexpr std::array<Source, 3> sources{{{"water", &fields::water_force}, {"soil", &fields::soil_force}, {"contact", &fields::contact_force}}};
+  static constexpr std::array<Source, 3> sources{{{"water", &fields::mean_water_force}, {"soil", &fields::mean_soil_force}, {"contact", &fields::contact_force}}};
 
   std::vector<Column> columns(const Model& model) const override {
     const bool flat = model.dimension == 2;

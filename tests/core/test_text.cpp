@@ -27,6 +27,7 @@ TEST_SUITE("core") {
     CHECK(nearest_name("Sound-Speed", names) == "sound_speed");
     CHECK(nearest_name("visc", names) == "viscosity");
     CHECK(nearest_name("", names).empty());
+    CHECK(nearest_name("d3", {"d0", "d33", "x3"}) == "d33");
   }
 
   TEST_CASE("short names allow one edit, and never a replacement of the whole name") {
