@@ -3,22 +3,23 @@
 
 #include "core/parallel.h"
 #include "effects/skin.h"
+#include "effects/wall_touch.h"
 #include "sph/cell_grid.h"
 #include "sph/neighbor_list.h"
 
 namespace sphgeo {
 namespace {
 
-/// What a contact needs of a particle of the skin or of a wall.
+/// What a contact of two solids needs of a particle of the skin.
 template <int Dim>
 struct ContactPoint {
   Vec<Dim> x = Vec<Dim>::Zero(), v = Vec<Dim>::Zero();
   double volume = 0;
-  double mass = 0;       ///< infinite for a wall
-  double stiffness = 0;  ///< rho_0 c_0^2; 0 for a wall, which takes that of its partner
+  double mass = 0;
+  double stiffness = 0;  ///< rho_0 c_0^2
   double impedance = 0;  ///< rho_0 c_0 times contact_damping
   double friction = 0;
-  double reach = 0;      ///< of the contact, 2 h^c, m
+  double reach = 0;      ///< of the contact with other solids, 2 h^c, m
 };
 
 /// Contact of solids with each other, with walls, and of a body with itself (Eqs. 78, 79).
@@ -26,7 +27,11 @@ struct ContactPoint {
 /// The pressure of a contact is rho_0 c_0^2 sum W V over the particles of others in reach, and the forces are the gradient
 /// of an energy, 1/2 rho_0 c_0^2 V (sum W V)^2 for every particle: a contact without friction and damping gives back what
 /// it took. Bodies that start closer than 2 h^c would be pushed apart by their mere presence: for them the reach
-/// is the gap of their particles at rest, so that they touch and are at ease. Walls mirror the pressure of the solid.
+/// is the gap of their particles at rest, so that they touch and are at ease.
+///
+/// Walls mirror the pressure of the solid, but only of what the sum exceeds the one of a plane wall that is touched: surface on
+/// surface, or as close as the body starts. A reach as short as the gap would see the single particles of the wall, and a block on a
+/// slope would rattle from one to the next. The force follows the gradient of the sum, which a plane has along its normal.
 template <int Dim>
 class SolidContact final : public Effect<Dim> {
  public:
@@ -72,7 +77,10 @@ class SolidContact final : public Effect<Dim> {
     if (walls_ && world.list("skin", "walls").active() > 0) with_walls(world);
   }
 
-  std::size_t bytes() const override { return map_.bytes() + list_.bytes() + (points_.capacity() + near_.capacity()) * sizeof(ContactPoint<Dim>); }
+  std::size_t bytes() const override {
+    return map_.bytes() + list_.bytes() + points_.capacity() * sizeof(ContactPoint<Dim>) + near_.capacity() * sizeof(Index) +
+           walls_seen_.capacity() * sizeof(WallSums<Dim>);
+  }
 
  private:
   ContactPoint<Dim> point_of(Index skin) const {
@@ -91,7 +99,9 @@ class SolidContact final : public Effect<Dim> {
   void find_partners(World<Dim>& world);
   bool may_touch(const World<Dim>& world, Index a, Index b) const;
   void between_solids(World<Dim>& world);
+  void see_walls(World<Dim>& world);
   void with_walls(World<Dim>& world);
+  void touch_walls(Index skin, double dt, Field<Vec<Dim>>& seen_force, Field<double>& energy);
 
   // Force on `a` by `b`, and how it grows with the pressures of both.
   Vec<Dim> force(const ContactPoint<Dim>& a, const ContactPoint<Dim>& b, double pressures, double sums, double dt) const;
@@ -102,6 +112,8 @@ class SolidContact final : public Effect<Dim> {
   SkinMap<Dim> map_;
   long arrangement_ = -1;
   std::vector<ContactPoint<Dim>> bodies_;   // what is the same for all particles of a body
+  std::vector<WallTouch<Dim>> touch_;       // by body
+  std::vector<WallSums<Dim>> walls_seen_;   // by particle of the skin
   std::vector<Index> near_;                 // particles of the skin that may touch another solid
   std::vector<ContactPoint<Dim>> points_;   // of them
   std::vector<double> sum_;                 // sum of W V at them
@@ -139,13 +151,7 @@ void SolidContact<Dim>::find_reaches(const World<Dim>& world) {
     grid.for_each_in_reach(at[static_cast<std::size_t>(k)], most, [&](Index j, double r2) {
       if (part[j] != part[k] && !clamped(map_.at(k)) && !clamped(map_.at(j))) close(part[k], r2);
     });
-  if (const ParticleSet<Dim>* walls = world.find("walls")) {
-    const auto& y = walls->vector(walls->has(fields::reference_position) ? fields::reference_position : fields::position);
-    for (Index w = 0; w < walls->size(); ++w)
-      grid.for_each_in_reach(y[w], most, [&](Index k, double r2) {
-        if (!clamped(map_.at(k))) close(part[k], r2);
-      });
-  }
+  if (walls_) touch_ = wall_touches(world, map_, solids_);
 }
 
 template <int Dim>
@@ -205,16 +211,16 @@ Vec<Dim> SolidContact<Dim>::force(const ContactPoint<Dim>& a, const ContactPoint
   const Vec<Dim> dv = a.v - b.v;
   const Vec<Dim> e = r / std::sqrt(r2);
   const double closing = -dv.dot(e);
-  const double damping = b.stiffness > 0 ? 0.5 * (a.impedance + b.impedance) : a.impedance;
+  const double damping = 0.5 * (a.impedance + b.impedance);
   pressures += 2 * damping * std::max(0.0, closing) * std::min(1.0, sums);
   const double push = -pressures * w.dw_over_r(r2) * a.volume * b.volume * std::sqrt(r2);
   Vec<Dim> f = push * e;
-  const double friction = b.stiffness > 0 ? std::min(a.friction, b.friction) : a.friction;
+  const double friction = std::min(a.friction, b.friction);
   if (friction > 0) {
     const Vec<Dim> slip = dv + closing * e;
     const double speed = slip.norm();
     // No more than what would stop the slip within some steps: a pair is one of many.
-    const double mass = b.stiffness > 0 ? a.mass * b.mass / (a.mass + b.mass) : a.mass;
+    const double mass = a.mass * b.mass / (a.mass + b.mass);
     if (speed > 0) f -= std::min(friction * push / speed, mass / (16 * dt)) * slip;
   }
   return f;
@@ -263,44 +269,80 @@ void SolidContact<Dim>::between_solids(World<Dim>& world) {
 }
 
 template <int Dim>
-void SolidContact<Dim>::with_walls(World<Dim>& world) {
+void SolidContact<Dim>::see_walls(World<Dim>& world) {
   const ParticleSet<Dim>& walls = world.set("walls");
   const auto& y = walls.vector(fields::position);
   const auto& u = walls.vector(fields::velocity);
-  const double volume = std::pow(walls.spacing(), Dim), dt = world.clock.dt_solid;
-  auto& energy = world.set("skin").scalar(fields::contact_energy);
-  auto& seen = world.set("skin").vector(fields::contact_force);
+  const double volume = std::pow(walls.spacing(), Dim);
   const auto blocks = world.list("skin", "walls").blocks();
+  walls_seen_.resize(static_cast<std::size_t>(world.set("skin").size()));
+  for (WallTouch<Dim>& t : touch_) t.touching = 0;
   parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
     const auto& block = blocks[static_cast<std::size_t>(b)];
     for (std::size_t k = 0; k < block.size(); ++k) {
       const Index skin = block.targets[k];
-      if (clamped(map_.at(skin))) continue;
-      const ContactPoint<Dim> p = point_of(skin);
-      if (!(p.reach > 0)) continue;
-      ContactPoint<Dim> wall;
-      wall.volume = volume;
-      wall.reach = p.reach;
-      const auto for_walls = [&](auto&& f) {
-        for (std::uint32_t e = 0; e < block.count[k]; ++e) {
-          const auto w = static_cast<Index>(block.entries[block.begin[k] + e] / 8);
-          if ((p.x - y[w]).squaredNorm() >= p.reach * p.reach) continue;
-          wall.x = y[w];
-          wall.v = u[w];
-          f();
-        }
-      };
-      double sum = 0;
-      for_walls([&] { sum += kernel(p, wall).w((p.x - wall.x).squaredNorm()) * volume; });
-      if (sum == 0) continue;
-      Vec<Dim> f = Vec<Dim>::Zero();
-      for_walls([&] { f += force(p, wall, 2 * p.stiffness * sum, sum, dt); });
-      const auto& [of, i] = map_.at(skin);
-      (*of->acceleration_sum)[i] += f / p.mass;
-      seen[skin] += f;
-      energy[skin] += p.stiffness * p.volume * sum * sum;
+      WallSums<Dim>& seen = walls_seen_[static_cast<std::size_t>(skin)] = {};
+      const SolidParticle<Dim>& p = map_.at(skin);
+      if (clamped(p)) continue;
+      const Kernel<Dim>& kernel = touch_[static_cast<std::size_t>(p.of->part[p.i])].kernel;
+      for (std::uint32_t e = 0; e < block.count[k]; ++e) {
+        const auto w = static_cast<Index>(block.entries[block.begin[k] + e] / 8);
+        const Vec<Dim> r = p.of->position[p.i] - y[w];
+        const double r2 = r.squaredNorm(), share = kernel.w(r2) * volume;
+        if (share <= 0) continue;
+        seen.sum += share;
+        seen.gradient += kernel.dw_over_r(r2) * volume * r;
+        seen.velocity += share * u[w];
+      }
+      if (seen.sum > 0) seen.velocity /= seen.sum;
     }
   });
+  for (const auto& block : blocks)
+    for (const std::uint32_t skin : block.targets) {
+      const SolidParticle<Dim>& p = map_.at(skin);
+      WallTouch<Dim>& t = touch_[static_cast<std::size_t>(p.of->part[p.i])];
+      if (walls_seen_[skin].sum > t.at_ease) ++t.touching;
+    }
+}
+
+template <int Dim>
+void SolidContact<Dim>::with_walls(World<Dim>& world) {
+  see_walls(world);
+  const double dt = world.clock.dt_solid;
+  auto& energy = world.set("skin").scalar(fields::contact_energy);
+  auto& seen_force = world.set("skin").vector(fields::contact_force);
+  const auto blocks = world.list("skin", "walls").blocks();
+  parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
+    for (const std::uint32_t skin : blocks[static_cast<std::size_t>(b)].targets) touch_walls(static_cast<Index>(skin), dt, seen_force, energy);
+  });
+}
+
+template <int Dim>
+void SolidContact<Dim>::touch_walls(Index skin, double dt, Field<Vec<Dim>>& seen_force, Field<double>& energy) {
+
+  const WallSums<Dim>& seen = walls_seen_[static_cast<std::size_t>(skin)];
+  const auto& [of, i] = map_.at(skin);
+  const WallTouch<Dim>& body = touch_[static_cast<std::size_t>(of->part[i])];
+  const double excess = seen.sum - body.at_ease, steepness = seen.gradient.norm();
+  if (excess <= 0 || steepness <= 0) return;
+  const ContactPoint<Dim> p = point_of(skin);
+  const Vec<Dim> n = -seen.gradient / steepness, dv = p.v - seen.velocity;
+  const double closing = -dv.dot(n);
+  // What the sum is at ease is left out: with this the pressure of Eq. 79 at half a spacing, all of the sum in the kernel of solids.
+  const double stiffness = 3 * p.stiffness;
+  const double pressure = 2 * (stiffness * excess + p.impedance * std::max(0.0, closing));
+  const double push = pressure * p.volume * steepness;
+  Vec<Dim> f = push * n;
+  const Vec<Dim> slip = dv + closing * n;
+  const double speed = slip.norm();
+  if (p.friction > 0 && speed > 0) {
+    // No more than what stops the slip within some steps: of a particle, or of the whole body by all that touch.
+    const double most = body.rigid ? body.mass / (8 * static_cast<double>(body.touching) * dt) : p.mass / (4 * dt);
+    f -= std::min(p.friction * push / speed, most) * slip;
+  }
+  (*of->acceleration_sum)[i] += f / p.mass;
+  seen_force[skin] += f;
+  energy[skin] += stiffness * p.volume * excess * excess;
 }
 
 const RegisterEffect<SolidContact> registered;

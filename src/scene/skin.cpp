@@ -78,8 +78,9 @@ void add_skin(Scene<Dim>& scene, const Model& model, Filling filling) {
       h = std::max(h, set->smoothing_length());
       spacing = std::max(spacing, set->spacing());
     }
-  // A quarter more than a kernel: lists of contacts hold for an advection step, in which two bodies may come 0.4 h closer.
-  ParticleSet<Dim>& skin = world.add_set("skin", "wall", spacing, 1.25 * h, true);
+  // A quarter more than a kernel: lists of contacts hold for an advection step, in which two bodies may come 0.4 h closer. And what
+  // the contact with walls reaches, 1.5 of their spacings.
+  ParticleSet<Dim>& skin = world.add_set("skin", "wall", spacing, std::max(1.25 * h, 1.6 * model.resolution), true);
   for (const FieldSpec* f : {&fields::normal, &fields::reference_normal, &fields::no_slip, &fields::source,
                              &fields::source_set, &fields::reference_volume})
     skin.require(*f);
