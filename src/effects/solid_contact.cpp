@@ -79,7 +79,7 @@ class SolidContact final : public Effect<Dim> {
 
   std::size_t bytes() const override {
     return map_.bytes() + list_.bytes() + points_.capacity() * sizeof(ContactPoint<Dim>) + near_.capacity() * sizeof(Index) +
-           walls_seen_.capacity() * sizeof(WallSums<Dim>);
+           walls_seen_.capacity() * sizeof(WallSums<Dim>) + bulk_.capacity() * sizeof(double);
   }
 
  private:
@@ -114,6 +114,7 @@ class SolidContact final : public Effect<Dim> {
   std::vector<ContactPoint<Dim>> bodies_;   // what is the same for all particles of a body
   std::vector<WallTouch<Dim>> touch_;       // by body
   std::vector<WallSums<Dim>> walls_seen_;   // by particle of the skin
+  std::vector<double> bulk_;                // by id of the wall's particle
   std::vector<Index> near_;                 // particles of the skin that may touch another solid
   std::vector<ContactPoint<Dim>> points_;   // of them
   std::vector<double> sum_;                 // sum of W V at them
@@ -151,7 +152,9 @@ void SolidContact<Dim>::find_reaches(const World<Dim>& world) {
     grid.for_each_in_reach(at[static_cast<std::size_t>(k)], most, [&](Index j, double r2) {
       if (part[j] != part[k] && !clamped(map_.at(k)) && !clamped(map_.at(j))) close(part[k], r2);
     });
-  if (walls_) touch_ = wall_touches(world, map_, solids_);
+  if (!walls_) return;
+  bulk_ = wall_bulk(world);
+  touch_ = wall_touches(world, map_, solids_, bulk_);
 }
 
 template <int Dim>
@@ -293,15 +296,18 @@ void SolidContact<Dim>::see_walls(World<Dim>& world) {
         seen.sum += share;
         seen.gradient += kernel.dw_over_r(r2) * volume * r;
         seen.velocity += share * u[w];
+        seen.bulk += share * bulk_[static_cast<std::size_t>(walls.ids()[w])];
       }
-      if (seen.sum > 0) seen.velocity /= seen.sum;
+      if (seen.sum <= 0) continue;
+      seen.velocity /= seen.sum;
+      seen.bulk /= seen.sum;
     }
   });
   for (const auto& block : blocks)
     for (const std::uint32_t skin : block.targets) {
       const SolidParticle<Dim>& p = map_.at(skin);
       WallTouch<Dim>& t = touch_[static_cast<std::size_t>(p.of->part[p.i])];
-      if (walls_seen_[skin].sum > t.at_ease) ++t.touching;
+      if (walls_seen_[skin].sum > t.at_ease * walls_seen_[skin].bulk) ++t.touching;
     }
 }
 
@@ -323,7 +329,7 @@ void SolidContact<Dim>::touch_walls(Index skin, double dt, Field<Vec<Dim>>& seen
   const WallSums<Dim>& seen = walls_seen_[static_cast<std::size_t>(skin)];
   const auto& [of, i] = map_.at(skin);
   const WallTouch<Dim>& body = touch_[static_cast<std::size_t>(of->part[i])];
-  const double excess = seen.sum - body.at_ease, steepness = seen.gradient.norm();
+  const double excess = seen.sum - body.at_ease * seen.bulk, steepness = seen.gradient.norm();
   if (excess <= 0 || steepness <= 0) return;
   const ContactPoint<Dim> p = point_of(skin);
   const Vec<Dim> n = -seen.gradient / steepness, dv = p.v - seen.velocity;

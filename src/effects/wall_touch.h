@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/parallel.h"
 #include "effects/skin.h"
 #include "sph/cell_grid.h"
 
@@ -31,28 +32,69 @@ struct WallTouch {
 template <int Dim>
 struct WallSums {
   double sum = 0;                              ///< of W V
+  double bulk = 0;                             ///< weighted mean of what wall_bulk() says
   Vec<Dim> gradient = Vec<Dim>::Zero();        ///< of the sum, 1/m
   Vec<Dim> velocity = Vec<Dim>::Zero();        ///< weighted mean, m/s
 };
 
-/// Mean sum of W V over a lattice of spacing dp that fills a half-space from a distance on, over all places along its surface.
+/// Mean sum of W V over a layer of a lattice of spacing dp, at a distance from it, over all places along it.
 template <int Dim>
-double half_space_sum(const Kernel<Dim>& kernel, double distance, double dp) {
+double layer_sum(const Kernel<Dim>& kernel, double distance, double dp) {
+  if (distance >= kernel.support()) return 0;
+  constexpr int parts = 200;
+  const double far = std::sqrt(kernel.support() * kernel.support() - distance * distance), step = far / parts;
   double sum = 0;
-  for (double z = distance; z < kernel.support(); z += dp) {
-    constexpr int parts = 200;
-    const double far = std::sqrt(kernel.support() * kernel.support() - z * z), step = far / parts;
-    for (int k = 0; k < parts; ++k) {
-      const double s = (k + 0.5) * step;
-      sum += kernel.w(z * z + s * s) * (Dim == 2 ? 2.0 : 2 * std::numbers::pi * s) * step * dp;
-    }
+  for (int k = 0; k < parts; ++k) {
+    const double s = (k + 0.5) * step;
+    sum += kernel.w(distance * distance + s * s) * (Dim == 2 ? 2.0 : 2 * std::numbers::pi * s) * step * dp;
   }
   return sum;
 }
 
-/// Where each body of the model touches walls, as it stands at t = 0. The map must be up to date.
+/// The same over a lattice that fills a half-space from a distance on.
 template <int Dim>
-std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const SkinMap<Dim>& map, const std::vector<std::string>& solids) {
+double half_space_sum(const Kernel<Dim>& kernel, double distance, double dp) {
+  double sum = 0;
+  for (double z = distance; z < kernel.support(); z += dp) sum += layer_sum(kernel, z, dp);
+  return sum;
+}
+
+/// How much wall there is around each particle of the walls, by id: the sum of W V, over what a body sees of it that touches a half-space.
+/// A column or a plate of few layers has less, and is touched where less of it is seen; the value is at most 1.
+template <int Dim>
+std::vector<double> wall_bulk(const World<Dim>& world) {
+  const ParticleSet<Dim>& walls = world.set("walls");
+  const double dp = walls.spacing(), volume = std::pow(dp, Dim);
+  const Kernel<Dim> kernel(wall_kernel * dp);
+  // Seen from where it is touched, a spacing off: layer by layer what the layer sees, weighted with how well it is seen.
+  double seen = 0, weights = 0;
+  for (int k = 0; (k + 1) * dp < kernel.support(); ++k) {
+    double around = 0;
+    for (int j = 0; std::abs(j - k) * dp < kernel.support(); ++j) around += layer_sum(kernel, std::abs(j - k) * dp, dp);
+    const double weight = layer_sum(kernel, (k + 1) * dp, dp);
+    seen += weight * around;
+    weights += weight;
+  }
+  const double plane = seen / weights;
+  const auto& y = walls.vector(walls.has(fields::reference_position) ? fields::reference_position : fields::position);
+  CellGrid<Dim> grid;
+  std::vector<Vec<Dim>> at(static_cast<std::size_t>(walls.size()));
+  for (Index w = 0; w < walls.size(); ++w) at[static_cast<std::size_t>(w)] = y[w];
+  grid.build(at, world.grid("skin").frame(), kernel.support());
+  std::vector<double> bulk(static_cast<std::size_t>(walls.size()));
+  parallel_for(walls.size(), [&](Index w) {
+    double sum = 0;
+    grid.for_each_in_reach(y[w], kernel.support(), [&](Index, double r2) { sum += kernel.w(r2) * volume; });
+    // Rounded: the order of a sum, and with it its last bits, may be another for a run that goes on.
+    bulk[static_cast<std::size_t>(walls.ids()[w])] = std::min(1.0, std::round(1e8 * sum / plane) * 1e-8);
+  });
+  return bulk;
+}
+
+/// Where each body of the model touches walls, as it stands at t = 0. The map must be up to date; `bulk` is that of wall_bulk().
+template <int Dim>
+std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const SkinMap<Dim>& map, const std::vector<std::string>& solids,
+                                         const std::vector<double>& bulk) {
   const ParticleSet<Dim>&skin = world.set("skin"), &walls = world.set("walls");
   std::vector<WallTouch<Dim>> touch(world.model().bodies.size());
   std::vector<Vec<Dim>> at(static_cast<std::size_t>(skin.size()));
@@ -89,16 +131,19 @@ std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const SkinMap<
   }
   // Rows that start face to face see a little more than the mean over all places: not to be pushed apart, they get that. In a
   // corner of two walls it would be too much for either alone.
-  std::vector<double> sums(at.size(), 0);
+  std::vector<double> sums(at.size(), 0), bulks(at.size(), 0);
   for (Index w = 0; w < walls.size(); ++w)
     grid.for_each_in_reach(y[w], most, [&](Index k, double r2) {
       const auto& p = map.at(k);
-      sums[static_cast<std::size_t>(k)] += touch[static_cast<std::size_t>(p.of->part[p.i])].kernel.w(r2) * std::pow(walls.spacing(), Dim);
+      const double share = touch[static_cast<std::size_t>(p.of->part[p.i])].kernel.w(r2) * std::pow(walls.spacing(), Dim);
+      sums[static_cast<std::size_t>(k)] += share;
+      bulks[static_cast<std::size_t>(k)] += share * bulk[static_cast<std::size_t>(walls.ids()[w])];
     });
   std::vector<double> most_seen(touch.size(), 0);
   for (Index k = 0; k < skin.size(); ++k) {
     double& seen = most_seen[static_cast<std::size_t>(skin.tag(fields::part)[k])];
-    if (map.at(k).of->clamp[map.at(k).i] < 0) seen = std::max(seen, sums[static_cast<std::size_t>(k)]);
+    const double sum = sums[static_cast<std::size_t>(k)];
+    if (map.at(k).of->clamp[map.at(k).i] < 0 && sum > 0) seen = std::max(seen, sum * sum / bulks[static_cast<std::size_t>(k)]);
   }
   // Rounded up: the last bits of a sum depend on the order of the walls, which a run that goes on may find them in anew.
   for (std::size_t b = 0; b < touch.size(); ++b)
