@@ -276,6 +276,7 @@ void SolidContact<Dim>::see_walls(World<Dim>& world) {
   const ParticleSet<Dim>& walls = world.set("walls");
   const auto& y = walls.vector(fields::position);
   const auto& u = walls.vector(fields::velocity);
+  const auto& id = walls.ids();
   const double volume = std::pow(walls.spacing(), Dim);
   const auto blocks = world.list("skin", "walls").blocks();
   walls_seen_.resize(static_cast<std::size_t>(world.set("skin").size()));
@@ -291,12 +292,13 @@ void SolidContact<Dim>::see_walls(World<Dim>& world) {
       for (std::uint32_t e = 0; e < block.count[k]; ++e) {
         const auto w = static_cast<Index>(block.entries[block.begin[k] + e] / 8);
         const Vec<Dim> r = p.of->position[p.i] - y[w];
-        const double r2 = r.squaredNorm(), share = kernel.w(r2) * volume;
-        if (share <= 0) continue;
+        const double r2 = r.squaredNorm();
+        if (r2 >= kernel.support() * kernel.support()) continue;
+        const double share = kernel.w(r2) * volume;
         seen.sum += share;
         seen.gradient += kernel.dw_over_r(r2) * volume * r;
         seen.velocity += share * u[w];
-        seen.bulk += share * bulk_[static_cast<std::size_t>(walls.ids()[w])];
+        seen.bulk += share * bulk_[static_cast<std::size_t>(id[w])];
       }
       if (seen.sum <= 0) continue;
       seen.velocity /= seen.sum;
@@ -325,7 +327,6 @@ void SolidContact<Dim>::with_walls(World<Dim>& world) {
 
 template <int Dim>
 void SolidContact<Dim>::touch_walls(Index skin, double dt, Field<Vec<Dim>>& seen_force, Field<double>& energy) {
-
   const WallSums<Dim>& seen = walls_seen_[static_cast<std::size_t>(skin)];
   const auto& [of, i] = map_.at(skin);
   const WallTouch<Dim>& body = touch_[static_cast<std::size_t>(of->part[i])];

@@ -77,6 +77,7 @@ std::vector<double> wall_bulk(const World<Dim>& world) {
   }
   const double plane = seen / weights;
   const auto& y = walls.vector(walls.has(fields::reference_position) ? fields::reference_position : fields::position);
+  const auto& id = walls.ids();
   CellGrid<Dim> grid;
   std::vector<Vec<Dim>> at(static_cast<std::size_t>(walls.size()));
   for (Index w = 0; w < walls.size(); ++w) at[static_cast<std::size_t>(w)] = y[w];
@@ -86,7 +87,7 @@ std::vector<double> wall_bulk(const World<Dim>& world) {
     double sum = 0;
     grid.for_each_in_reach(y[w], kernel.support(), [&](Index, double r2) { sum += kernel.w(r2) * volume; });
     // Rounded: the order of a sum, and with it its last bits, may be another for a run that goes on.
-    bulk[static_cast<std::size_t>(walls.ids()[w])] = std::min(1.0, std::round(1e8 * sum / plane) * 1e-8);
+    bulk[static_cast<std::size_t>(id[w])] = std::min(1.0, std::round(1e8 * sum / plane) * 1e-8);
   });
   return bulk;
 }
@@ -116,6 +117,7 @@ std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const SkinMap<
   CellGrid<Dim> grid;
   grid.build(at, world.grid("skin").frame(), most);
   const auto& y = walls.vector(walls.has(fields::reference_position) ? fields::reference_position : fields::position);
+  const auto& id = walls.ids();
   for (Index w = 0; w < walls.size(); ++w)
     grid.for_each_in_reach(y[w], most, [&](Index k, double r2) {
       const auto& p = map.at(k);
@@ -137,7 +139,7 @@ std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const SkinMap<
       const auto& p = map.at(k);
       const double share = touch[static_cast<std::size_t>(p.of->part[p.i])].kernel.w(r2) * std::pow(walls.spacing(), Dim);
       sums[static_cast<std::size_t>(k)] += share;
-      bulks[static_cast<std::size_t>(k)] += share * bulk[static_cast<std::size_t>(walls.ids()[w])];
+      bulks[static_cast<std::size_t>(k)] += share * bulk[static_cast<std::size_t>(id[w])];
     });
   std::vector<double> most_seen(touch.size(), 0);
   for (Index k = 0; k < skin.size(); ++k) {
