@@ -79,10 +79,8 @@ int usage_error(const CLI::App& app, const CLI::ParseError& error) {
   if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
   const auto chosen = app.get_subcommands();
   std::cerr << "error: " << printable(complaint(app, error), "\n") << "\n";
-  if (chosen.empty())
-    std::cerr << "  'sphgeo --help' lists the commands\n";
-  else
-    std::cerr << "  'sphgeo " << chosen.front()->get_name() << " --help' lists its options\n";
+  if (chosen.empty()) std::cerr << "  'sphgeo --help' lists the commands\n";
+  else std::cerr << "  'sphgeo " << chosen.front()->get_name() << " --help' lists its options\n";
   return static_cast<int>(ExitCode::usage);
 }
 
@@ -137,11 +135,13 @@ void add_deck(CLI::App* app, std::string& deck, std::vector<std::string>& set) {
       ->type_name("KEY=VALUE");
 }
 
-/// A standard stream that the caller has closed would lend its number to the next file that is opened,
-/// and messages would go into it. Opened the wrong way round, such a stream refuses what is written.
+/// A standard stream that the caller has closed would lend its number to the next file that is
+/// opened, and messages would go into it. Opened the wrong way round, such a stream refuses what is
+/// written.
 void keep_standard_streams() {
   for (const int stream : {0, 1, 2})
-    if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY) < 0) return;
+    if (::fcntl(stream, F_GETFD) < 0 && ::open("/dev/null", stream == 0 ? O_WRONLY : O_RDONLY) < 0)
+      return;
 }
 
 }  // namespace
@@ -153,11 +153,14 @@ int main(int argc, char** argv) {
   CLI::App app{
       "soil, water, rock and structures with smoothed particle hydrodynamics, from a YAML deck",
       "sphgeo"};
-  app.set_version_flag("--version", [] {
-    std::string text = version_text();
-    text.pop_back();  // the line ends by itself
-    return text;
-  }, "print version, commit, compiler, vector width and libraries");
+  app.set_version_flag(
+      "--version",
+      [] {
+        std::string text = version_text();
+        text.pop_back();  // the line ends by itself
+        return text;
+      },
+      "print version, commit, compiler, vector width and libraries");
   app.require_subcommand(1);
   const auto whole = above_zero<int>("a whole number");
   int code = 0;
@@ -187,11 +190,13 @@ int main(int argc, char** argv) {
       ->check(whole)
       ->type_name("N");
   run_app
-      ->add_option("--max-acoustic-steps", run.limits.max_acoustic_steps, "the same after N acoustic steps, also within an advection step")
+      ->add_option("--max-acoustic-steps", run.limits.max_acoustic_steps,
+                   "the same after N acoustic steps, also within an advection step")
       ->check(whole)
       ->type_name("N");
   run_app->add_flag("--verify", run.verify, "exit with 4 when a result under 'expect' is not met");
-  run_app->add_flag_callback("--no-report", [&] { run.report = false; }, "do not write report.html at the end");
+  run_app->add_flag_callback(
+      "--no-report", [&] { run.report = false; }, "do not write report.html at the end");
   run_app->add_flag("-q,--quiet", run.quiet, "no progress and no time table");
   run_app->callback([&] { code = run_guarded([&] { return run_command(run); }); });
 
@@ -201,16 +206,19 @@ int main(int argc, char** argv) {
   check_app->add_flag("--explain", check.explain,
                       "print the plan: what runs and why, lists, fields, memory");
   check_app->add_flag("--json", check.json, "the plan and the forecast as JSON");
-  check_app->add_option("--preview", check.preview, "paint the scene before it runs into this PNG")->type_name("FILE");
-  check_app->add_flag_callback("--no-calibrate", [&] { check.calibrate = false; },
-                               "do not time a few steps: the forecast says nothing of the time");
+  check_app->add_option("--preview", check.preview, "paint the scene before it runs into this PNG")
+      ->type_name("FILE");
+  check_app->add_flag_callback(
+      "--no-calibrate", [&] { check.calibrate = false; },
+      "do not time a few steps: the forecast says nothing of the time");
   check_app->add_option("--threads", check.threads, "number of threads of the forecast run")
       ->check(whole)
       ->type_name("N");
   check_app->callback([&] { code = run_guarded([&] { return check_command(check); }); });
 
   RelaxOptions relax;
-  CLI::App* relax_app = app.add_subcommand("relax", "distribute the water in the pores of soil, and store it");
+  CLI::App* relax_app =
+      app.add_subcommand("relax", "distribute the water in the pores of soil, and store it");
   add_deck(relax_app, relax.deck, relax.set);
   relax_app->add_option("-o,--output", relax.folder, "the folder of the results")
       ->required()
@@ -225,55 +233,80 @@ int main(int argc, char** argv) {
   relax_app->callback([&] { code = run_guarded([&] { return relax_command(relax); }); });
 
   ExportOptions exported;
-  CLI::App* export_app = app.add_subcommand("export", "write the surface of a body or a wall as STL");
+  CLI::App* export_app =
+      app.add_subcommand("export", "write the surface of a body or a wall as STL");
   add_deck(export_app, exported.deck, exported.set);
-  export_app->add_option("name", exported.name, "the body or the wall")->required()->type_name("NAME");
+  export_app->add_option("name", exported.name, "the body or the wall")
+      ->required()
+      ->type_name("NAME");
   export_app->add_option("-o,--output", exported.output, "the file")->required()->type_name("FILE");
   export_app->add_flag("--overwrite", exported.overwrite, "replace the file if it exists");
-  export_app->add_option("--spacing", exported.spacing, "of the grid that finds the surface, m (default: half the resolution)")->type_name("S");
+  export_app
+      ->add_option("--spacing", exported.spacing,
+                   "of the grid that finds the surface, m (default: half the resolution)")
+      ->type_name("S");
   export_app->callback([&] { code = run_guarded([&] { return export_command(exported); }); });
 
   StudyOptions study;
-  CLI::App* study_app = app.add_subcommand("study", "run a deck with different settings: what accuracy costs in time");
+  CLI::App* study_app = app.add_subcommand(
+      "study", "run a deck with different settings: what accuracy costs in time");
   add_deck(study_app, study.deck, study.set);
   study_app
-      ->add_option("--vary", study.vary,
-                   "the values that a key takes in turn, as resolution=0.04,0.02,0.01; may be repeated")
+      ->add_option(
+          "--vary", study.vary,
+          "the values that a key takes in turn, as resolution=0.04,0.02,0.01; may be repeated")
       ->required()
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE,VALUE...");
   study_app->add_flag("--combine", study.combine,
                       "run all combinations of the varied keys (default: one key at a time)");
-  study_app->add_option("-o,--output", study.folder, "the folder of the study; runs in it are used again")
+  study_app
+      ->add_option("-o,--output", study.folder,
+                   "the folder of the study; runs in it are used again")
       ->required()
       ->type_name("DIR");
-  study_app->add_option("--jobs", study.jobs, "runs at the same time; more than one disturbs the times")
+  study_app
+      ->add_option("--jobs", study.jobs, "runs at the same time; more than one disturbs the times")
       ->check(whole)
       ->type_name("N");
   study_app->add_option("--threads", study.threads, "number of threads of each run")
       ->check(whole)
       ->type_name("N");
-  study_app->add_option("--max-hours", study.max_hours, "stop, resumable, before this wall time is over")
+  study_app
+      ->add_option("--max-hours", study.max_hours, "stop, resumable, before this wall time is over")
       ->check(above_zero<double>("a number"))
       ->type_name("H");
   study_app->add_flag("-q,--quiet", study.quiet, "say nothing but results");
   study_app->callback([&] { code = run_guarded([&] { return study_command(study); }); });
 
   CompareOptions compare;
-  CLI::App* compare_app = app.add_subcommand("compare", "compare a run with another run or with a baseline");
-  compare_app->add_option("run", compare.run, "the folder of the run")->required()->type_name("RUN");
-  compare_app->add_option("baseline", compare.baseline, "a run folder, or a file that --update has written")
+  CLI::App* compare_app =
+      app.add_subcommand("compare", "compare a run with another run or with a baseline");
+  compare_app->add_option("run", compare.run, "the folder of the run")
+      ->required()
+      ->type_name("RUN");
+  compare_app
+      ->add_option("baseline", compare.baseline,
+                   "a run folder, or a file that --update has written")
       ->required()
       ->type_name("BASELINE");
-  compare_app->add_option("--tolerances", compare.tolerances, "a YAML file of tolerances")->type_name("FILE");
-  CLI::Option* update = compare_app->add_flag("--update", compare.update, "write the run to the file as its new baseline");
+  compare_app->add_option("--tolerances", compare.tolerances, "a YAML file of tolerances")
+      ->type_name("FILE");
+  CLI::Option* update = compare_app->add_flag("--update", compare.update,
+                                              "write the run to the file as its new baseline");
   compare_app->add_flag("--json", compare.json, "print JSON")->excludes(update);
   compare_app->add_flag("--all", compare.all, "list all that was compared")->excludes(update);
   compare_app->callback([&] { code = run_guarded([&] { return compare_command(compare); }); });
   ReportOptions report;
-  CLI::App* report_app = app.add_subcommand("report", "write a page about one run, or several side by side");
-  report_app->add_option("runs", report.runs, "the folders of the runs")->required()->type_name("RUN...");
-  report_app->add_option("-o,--output", report.output, "the page (default: report.html in the folder of the run)")->type_name("FILE");
+  CLI::App* report_app =
+      app.add_subcommand("report", "write a page about one run, or several side by side");
+  report_app->add_option("runs", report.runs, "the folders of the runs")
+      ->required()
+      ->type_name("RUN...");
+  report_app
+      ->add_option("-o,--output", report.output,
+                   "the page (default: report.html in the folder of the run)")
+      ->type_name("FILE");
   report_app->callback([&] { code = run_guarded([&] { return report_command(report); }); });
 
   CLI::App* list_app =
@@ -281,7 +314,8 @@ int main(int argc, char** argv) {
   list_app->callback([&] { code = run_guarded(list_command); });
 
   std::string type;
-  CLI::App* show_app = app.add_subcommand("show", "print the keys of a type or section, or what an effect or field is");
+  CLI::App* show_app = app.add_subcommand(
+      "show", "print the keys of a type or section, or what an effect or field is");
   show_app->add_option("type", type, "a name that 'sphgeo list' prints")
       ->required()
       ->type_name("TYPE");

@@ -1,8 +1,8 @@
 // Times the pair loops on a block of water (not run by ctest):
 //   bench_pairs [particles per edge = 53] [repeats = 7]
 // One update is one particle through one acoustic step: the momentum pass (Riemann pressure with
-// limiter, Eq. 61-63, and the viscous term of Eq. 60) and the density pass (Eq. 58). The machine may
-// be busy: the best of all repeats counts, beside the rate of a calibration loop.
+// limiter, Eq. 61-63, and the viscous term of Eq. 60) and the density pass (Eq. 58). The machine
+// may be busy: the best of all repeats counts, beside the rate of a calibration loop.
 
 #include <algorithm>
 #include <chrono>
@@ -39,8 +39,8 @@ struct Momentum {
     const T closing = -dot(v_ij, r) * inverse_length(r2);
     const T beta = min(T(1.0), T(limiter / c0) * max(T(0.0), closing));
     const T p_star = T(0.5) * (i[p] + j[p] + beta * T(rho0 * c0) * closing);
-    const T viscous = T(2.0 * viscosity) * r2 * dW_r *
-                      reciprocal(r2 + T(0.01 * kernel.h * kernel.h));
+    const T viscous =
+        T(2.0 * viscosity) * r2 * dW_r * reciprocal(r2 + T(0.01 * kernel.h * kernel.h));
     sum.force += viscous * v_ij - T(2.0) * p_star * dW_r * r;
   }
 };
@@ -183,9 +183,10 @@ int main(int argc, char** argv) {
       best_list = std::min(best_list, t2 - t1);
     }
     const double n = static_cast<double>(r.size());
-    std::printf("h = %.1f dp, %.0f particles, %.1f neighbors, %d threads, %.0f list bytes/particle\n",
-                ratio, n, static_cast<double>(list.pairs()) / n, threads(),
-                static_cast<double>(list.bytes()) / n);
+    std::printf(
+        "h = %.1f dp, %.0f particles, %.1f neighbors, %d threads, %.0f list bytes/particle\n",
+        ratio, n, static_cast<double>(list.pairs()) / n, threads(),
+        static_cast<double>(list.bytes()) / n);
     std::printf("  search  %.0f ns/particle (sort %.0f, list %.0f)\n",
                 1e9 * (best_sort + best_list) / n, 1e9 * best_sort / n, 1e9 * best_list / n);
     time_steps<float>("float", list, r, frame, h, repeats);

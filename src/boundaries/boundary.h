@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "deck/motion.h"
 #include "core/types.h"
 #include "deck/interfaces.h"
+#include "deck/motion.h"
 #include "deck/schema.h"
 #include "geometry/fill.h"
 
@@ -19,7 +19,7 @@ struct Placement {
   double spacing;    ///< dp, m
   double thickness;  ///< how deep the wall must be so that no kernel sees its end, m
   int dimension;
-  Aabb clip{};       ///< region of interest for solids without end; empty: none
+  Aabb clip{};  ///< region of interest for solids without end; empty: none
 };
 
 /// One wall particle: place and outward unit normal of the solid (towards the fluid).
@@ -50,7 +50,9 @@ struct WallBoundary : BoundarySpec {
   /// About how many they are, without placing them; not finite when nothing bounds them.
   virtual double expected_points(const Placement& p) const {
     const auto shape = solid(p);
-    return shape ? estimate_layers(*shape, p.spacing, p.dimension, p.thickness, LayerSide::inside, p.clip) : 0.0;
+    return shape ? estimate_layers(*shape, p.spacing, p.dimension, p.thickness, LayerSide::inside,
+                                   p.clip)
+                 : 0.0;
   }
   /// The solid as a shape, for checks and pictures; null when it has none.
   virtual std::shared_ptr<const Shape> solid(const Placement&) const = 0;

@@ -17,13 +17,15 @@ struct ExchangeBoundary : BoundarySpec {
   /// Where particles appear, m; empty for a border through which they only leave.
   virtual Aabb source_box() const { return {}; }
   /// About how many particles enter between two times, s; empty when that cannot be known.
-  virtual std::optional<double> expected_particles(double spacing, int dimension, double from, double to) const {
+  virtual std::optional<double> expected_particles(double spacing, int dimension, double from,
+                                                   double to) const {
     (void)spacing, (void)dimension, (void)from, (void)to;
     return 0.0;
   }
 };
 
-/// A flat rectangle (in 2D a line) that emits layers of water with a prescribed velocity, into air or along a wall.
+/// A flat rectangle (in 2D a line) that emits layers of water with a prescribed velocity, into air
+/// or along a wall.
 struct Inlet final : ExchangeBoundary {
   Vec3 min = Vec3::Zero(), max = Vec3::Zero();
   std::array<Expression, 3> velocity;
@@ -40,11 +42,13 @@ struct Inlet final : ExchangeBoundary {
   std::vector<Vec3> layer(double spacing, int dimension) const;
 
   Aabb source_box() const override;
-  std::optional<double> expected_particles(double spacing, int dimension, double from, double to) const override;
+  std::optional<double> expected_particles(double spacing, int dimension, double from,
+                                           double to) const override;
   static Schema<Inlet> schema();
 };
 
-/// Keeps the surface of the water in a region at a level: where it has sunk, water without pressure is added.
+/// Keeps the surface of the water in a region at a level: where it has sunk, water without pressure
+/// is added.
 struct Reservoir final : ExchangeBoundary {
   std::shared_ptr<const Shape> shape;
   double level = 0;  ///< z of the surface, m
@@ -52,7 +56,9 @@ struct Reservoir final : ExchangeBoundary {
   /// The places just below the level that water may be added at.
   std::vector<Vec3> places(double spacing, int dimension) const;
   Aabb source_box() const override;
-  std::optional<double> expected_particles(double, int, double, double) const override { return {}; }
+  std::optional<double> expected_particles(double, int, double, double) const override {
+    return {};
+  }
   static Schema<Reservoir> schema();
 };
 

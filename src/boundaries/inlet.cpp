@@ -6,11 +6,20 @@
 namespace sphgeo {
 
 Schema<Inlet> Inlet::schema() {
-  Schema<Inlet> s("inlet", "a flat rectangle that emits layers of water with a prescribed velocity, into air or along a wall: a jet, rain");
+  Schema<Inlet> s("inlet",
+                  "a flat rectangle that emits layers of water with a prescribed velocity, into "
+                  "air or along a wall: a jet, rain");
   s.required("min", &Inlet::min, unit::length, "one corner of the rectangle");
-  s.required("max", &Inlet::max, unit::length, "the opposite corner; along one axis the two are the same. The flow is that of the nearest whole number of spacings along each side");
-  s.required("velocity", &Inlet::velocity, unit::speed, "velocity of the water, formulas of t").only_of("t");
-  s.optional("share", &Inlet::share, unit::none, "part of the places in a layer that get a particle, chosen at random: below 1 it rains in drops").above(0).at_most(1);
+  s.required("max", &Inlet::max, unit::length,
+             "the opposite corner; along one axis the two are the same. The flow is that of the "
+             "nearest whole number of spacings along each side");
+  s.required("velocity", &Inlet::velocity, unit::speed, "velocity of the water, formulas of t")
+      .only_of("t");
+  s.optional("share", &Inlet::share, unit::none,
+             "part of the places in a layer that get a particle, chosen at random: below 1 it "
+             "rains in drops")
+      .above(0)
+      .at_most(1);
   s.optional("seed", &Inlet::seed, unit::none, "another seed, other drops").at_least(0);
   s.optional("from", &Inlet::from, unit::time, "it is closed before this time").at_least(0);
   s.optional("until", &Inlet::until, unit::time, "it is closed after this time");
@@ -21,9 +30,13 @@ Schema<Inlet> Inlet::schema() {
         flat += inlet.max[k] == inlet.min[k];
         if (inlet.max[k] < inlet.min[k]) return c.error("max", "max lies below min", "swap them");
       }
-    if (flat != 1) return c.error("max", "an inlet is flat: min and max differ along all axes but one", "give both the same coordinate along the axis that the water crosses");
+    if (flat != 1)
+      return c.error("max", "an inlet is flat: min and max differ along all axes but one",
+                     "give both the same coordinate along the axis that the water crosses");
     const double across = inlet.velocity_at(inlet.from)[inlet.axis(c.dimension())];
-    if (across == 0) c.error("velocity", "the water does not cross the rectangle when the inlet opens", "give it a velocity along the axis in which min and max are the same");
+    if (across == 0)
+      c.error("velocity", "the water does not cross the rectangle when the inlet opens",
+              "give it a velocity along the axis in which min and max are the same");
     if (inlet.until && *inlet.until <= inlet.from) c.error("until", "it ends before it begins", "");
   });
   return s;
@@ -43,7 +56,10 @@ Vec3 Inlet::velocity_at(double time) const {
 std::vector<Vec3> Inlet::layer(double spacing, int dimension) const {
   const int across = axis(dimension);
   Index n[3];
-  for (const int k : {0, 1, 2}) n[k] = k == across || (dimension == 2 && k == 1) ? 1 : std::max<Index>(1, std::llround((max[k] - min[k]) / spacing));
+  for (const int k : {0, 1, 2})
+    n[k] = k == across || (dimension == 2 && k == 1)
+               ? 1
+               : std::max<Index>(1, std::llround((max[k] - min[k]) / spacing));
   std::vector<Vec3> places;
   for (Index z = 0; z < n[2]; ++z)
     for (Index y = 0; y < n[1]; ++y)
@@ -51,7 +67,11 @@ std::vector<Vec3> Inlet::layer(double spacing, int dimension) const {
         const Index at[3] = {x, y, z};
         Vec3 p = min;
         for (const int k : {0, 1, 2})
-          if (k != across) p[k] = dimension == 2 && k == 1 ? 0 : min[k] + (static_cast<double>(at[k]) + 0.5) * (max[k] - min[k]) / static_cast<double>(n[k]);
+          if (k != across)
+            p[k] = dimension == 2 && k == 1
+                       ? 0
+                       : min[k] + (static_cast<double>(at[k]) + 0.5) * (max[k] - min[k]) /
+                                      static_cast<double>(n[k]);
         places.push_back(p);
       }
   return places;
@@ -64,13 +84,15 @@ Aabb Inlet::source_box() const {
   return box;
 }
 
-std::optional<double> Inlet::expected_particles(double spacing, int dimension, double start, double end) const {
+std::optional<double> Inlet::expected_particles(double spacing, int dimension, double start,
+                                                double end) const {
   const double a = std::max(start, from), b = std::min(end, until.value_or(end));
   if (!(b > a)) return 0.0;
   constexpr int samples = 200;
   const int across = axis(dimension);
   double way = 0;
-  for (int k = 0; k < samples; ++k) way += std::abs(velocity_at(a + (k + 0.5) * (b - a) / samples)[across]) * (b - a) / samples;
+  for (int k = 0; k < samples; ++k)
+    way += std::abs(velocity_at(a + (k + 0.5) * (b - a) / samples)[across]) * (b - a) / samples;
   return share * static_cast<double>(layer(spacing, dimension).size()) * way / spacing;
 }
 

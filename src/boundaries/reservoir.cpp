@@ -6,13 +6,18 @@
 namespace sphgeo {
 
 Schema<Reservoir> Reservoir::schema() {
-  Schema<Reservoir> s("reservoir", "keeps the surface of the water in a region at a level: where it has sunk, water without pressure is added");
+  Schema<Reservoir> s("reservoir",
+                      "keeps the surface of the water in a region at a level: where it has sunk, "
+                      "water without pressure is added");
   s.required("shape", &Reservoir::shape, unit::none, "the region that water is added in, bounded");
   s.required("level", &Reservoir::level, unit::length, "z of the surface");
   s.check([](Reservoir& r, CheckContext& c) {
     const Aabb box = r.shape->box();
-    if (!(box.lo.allFinite() && box.hi.allFinite())) return c.error("shape", "the region is unbounded", "intersect it with a box");
-    if (box.lo.z() > r.level - c.resolution() || box.hi.z() < r.level) c.error("level", "the region does not hold the layer below this level", "let its box reach from a spacing below to the level");
+    if (!(box.lo.allFinite() && box.hi.allFinite()))
+      return c.error("shape", "the region is unbounded", "intersect it with a box");
+    if (box.lo.z() > r.level - c.resolution() || box.hi.z() < r.level)
+      c.error("level", "the region does not hold the layer below this level",
+              "let its box reach from a spacing below to the level");
   });
   return s;
 }
@@ -21,12 +26,20 @@ std::vector<Vec3> Reservoir::places(double spacing, int dimension) const {
   const Aabb box = shape->box();
   std::vector<Vec3> places;
   // Never closer than a spacing: each gets the mass of a whole one.
-  const auto count = [&](int k) { return std::max<Index>(1, static_cast<Index>(std::floor((box.hi[k] - box.lo[k]) / spacing + 1e-9))); };
+  const auto count = [&](int k) {
+    return std::max<Index>(
+        1, static_cast<Index>(std::floor((box.hi[k] - box.lo[k]) / spacing + 1e-9)));
+  };
   const Index nx = count(0), ny = dimension == 2 ? 1 : count(1);
   for (Index y = 0; y < ny; ++y)
     for (Index x = 0; x < nx; ++x) {
-      const Vec3 p(box.lo.x() + (static_cast<double>(x) + 0.5) * (box.hi.x() - box.lo.x()) / static_cast<double>(nx),
-                   dimension == 2 ? 0 : box.lo.y() + (static_cast<double>(y) + 0.5) * (box.hi.y() - box.lo.y()) / static_cast<double>(ny), level - 0.5 * spacing);
+      const Vec3 p(box.lo.x() + (static_cast<double>(x) + 0.5) * (box.hi.x() - box.lo.x()) /
+                                    static_cast<double>(nx),
+                   dimension == 2
+                       ? 0
+                       : box.lo.y() + (static_cast<double>(y) + 0.5) * (box.hi.y() - box.lo.y()) /
+                                          static_cast<double>(ny),
+                   level - 0.5 * spacing);
       if (shape->signed_distance(p) < 0) places.push_back(p);
     }
   return places;

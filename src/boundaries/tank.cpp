@@ -18,8 +18,12 @@ struct Face {
   int axis;
   bool high;
 };
-constexpr std::array<Face, 6> faces{{{"left", 0, false}, {"right", 0, true}, {"front", 1, false},
-                                     {"back", 1, true}, {"bottom", 2, false}, {"top", 2, true}}};
+constexpr std::array<Face, 6> faces{{{"left", 0, false},
+                                     {"right", 0, true},
+                                     {"front", 1, false},
+                                     {"back", 1, true},
+                                     {"bottom", 2, false},
+                                     {"top", 2, true}}};
 
 std::string rounded(double n) { return fmt::format("{:.3g}", n); }
 
@@ -33,19 +37,24 @@ struct Tank final : WallBoundary {
     Schema<Tank> s("tank", "walls around the inside of a box");
     s.required("min", &Tank::min, unit::length, "lower corner of the inside");
     s.required("max", &Tank::max, unit::length, "upper corner of the inside");
-    s.optional("open", &Tank::open, unit::none, "faces without a wall (front and back are those across y)")
+    s.optional("open", &Tank::open, unit::none,
+               "faces without a wall (front and back are those across y)")
         .choices({"left", "right", "front", "back", "bottom", "top"});
     declare_wall_keys(s);
     s.check([](Tank& t, CheckContext& c) {
       for (int k = 0; k < 3; ++k)
         if (!(k == 1 && c.dimension() == 2) && !(t.max[k] > t.min[k]))
-          return c.error("max", std::string("the tank has no extent along ") + "xyz"[k], "max must exceed min in every direction");
+          return c.error("max", std::string("the tank has no extent along ") + "xyz"[k],
+                         "max must exceed min in every direction");
       // Its walls are some layers thick: six faces, in spacings, bound their particles from below.
       if (!(c.resolution() > 0)) return;
       const Vec3 n = ((t.max - t.min) / c.resolution()).cwiseMax(1.0);
-      const double faces_of = c.dimension() == 2 ? n.x() + n.z() : n.x() * n.y() + n.y() * n.z() + n.z() * n.x();
+      const double faces_of =
+          c.dimension() == 2 ? n.x() + n.z() : n.x() * n.y() + n.y() * n.z() + n.z() * n.x();
       if (!(faces_of <= largest_fill))
-        c.error("", "the walls of the tank would take about " + rounded(faces_of) + " particles in each layer",
+        c.error("",
+                "the walls of the tank would take about " + rounded(faces_of) +
+                    " particles in each layer",
                 "is the resolution or a length in the wrong unit?");
     });
     return s;
@@ -53,7 +62,8 @@ struct Tank final : WallBoundary {
 
   bool is_open(int axis, bool high) const {
     return std::any_of(faces.begin(), faces.end(), [&](const Face& f) {
-      return f.axis == axis && f.high == high && std::find(open.begin(), open.end(), f.name) != open.end();
+      return f.axis == axis && f.high == high &&
+             std::find(open.begin(), open.end(), f.name) != open.end();
     });
   }
 
@@ -82,8 +92,8 @@ struct Tank final : WallBoundary {
     return a;
   }
 
-  /// Towards the inside; on the rim of an open face towards that face, so that water which jumps onto the
-  /// rim lies on it and is not drawn through the wall.
+  /// Towards the inside; on the rim of an open face towards that face, so that water which jumps
+  /// onto the rim lies on it and is not drawn through the wall.
   Vec3 normal_at(const Vec3& x, const Vec3& inner, int dimension) const {
     double nearest = (inner - x).norm();
     Vec3 normal = (inner - x) / nearest;
@@ -142,7 +152,9 @@ struct Tank final : WallBoundary {
       std::array<std::vector<double>, 3> at;
       for (int k = 0; k < 3; ++k) {
         const Axis a = axis(k, p);
-        if (k == f.axis) at[static_cast<std::size_t>(k)] = {f.high ? max[k] + 0.5 * p.spacing : min[k] - 0.5 * p.spacing};
+        if (k == f.axis)
+          at[static_cast<std::size_t>(k)] = {f.high ? max[k] + 0.5 * p.spacing
+                                                    : min[k] - 0.5 * p.spacing};
         else
           for (std::size_t i = 0; i < a.at.size(); ++i)
             if (!a.outside[i]) at[static_cast<std::size_t>(k)].push_back(a.at[i]);

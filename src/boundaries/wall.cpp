@@ -20,7 +20,8 @@ struct Wall final : WallBoundary {
   std::vector<WallPoint> points(const Placement& p) const override {
     std::vector<WallPoint> wall;
     // Only as deep as a kernel reaches: the heart of a solid touches nothing.
-    for (const Vec3& x : fill_layers(*shape, p.spacing, p.dimension, p.thickness, LayerSide::inside, p.clip))
+    for (const Vec3& x :
+         fill_layers(*shape, p.spacing, p.dimension, p.thickness, LayerSide::inside, p.clip))
       wall.push_back({x, outward_normal(*shape, x, 0.5 * p.spacing, p.dimension)});
     return wall;
   }

@@ -1,4 +1,5 @@
-// `sphgeo bench --effects`: a scene as it is planned, and the same with effects forced on that it does not call for.
+// `sphgeo bench --effects`: a scene as it is planned, and the same with effects forced on that it
+// does not call for.
 
 #include <fmt/format.h>
 
@@ -24,8 +25,9 @@ namespace {
 struct Forcing {
   const char* what;
   std::string materials, bodies, numerics;  ///< added to the deck's lists
-  bool all_fields = false;                  ///< every field that an effect can compute is asked for, each advection step
-  const char* at_body = "";                 ///< keys added to the scene's own body
+  bool all_fields =
+      false;  ///< every field that an effect can compute is asked for, each advection step
+  const char* at_body = "";  ///< keys added to the scene's own body
 };
 
 /// A scene, and what it is forced to.
@@ -41,7 +43,9 @@ std::string box(double x0, double x1, double y1, double z1) {
 }
 
 std::string deck(const EffectScene& scene, const Forcing* forced) {
-  std::string text = "dimension: 3\nresolution: 1\ngravity: [0, 0, 0]\nend_time: 1e9\nmaterials:\n" + scene.materials;
+  std::string text =
+      "dimension: 3\nresolution: 1\ngravity: [0, 0, 0]\nend_time: 1e9\nmaterials:\n" +
+      scene.materials;
   if (forced) text += forced->materials;
   text += "bodies:\n  - {" + scene.body + (forced ? forced->at_body : "") + "}\n";
   if (forced) text += forced->bodies;
@@ -55,30 +59,49 @@ std::string deck(const EffectScene& scene, const Forcing* forced) {
 std::vector<EffectScene> effect_scenes(long n) {
   const int c = std::max(6, static_cast<int>(std::lround(std::cbrt(static_cast<double>(n)))));
   const std::string water = "  - {name: water, type: water, sound_speed: 10, viscosity: 0.1}\n";
-  const std::string soil = "  - {name: soil, type: soil, density: 2000, volume_fraction: 0.6, youngs_modulus: 1.2e5, friction_angle: 30 deg, cohesion: 1 kPa, grain_size: 1e-3}\n";
-  const std::string rubber = "  - {name: rubber, type: elastic, density: 1000, youngs_modulus: 1e5}\n";
+  const std::string soil =
+      "  - {name: soil, type: soil, density: 2000, volume_fraction: 0.6, youngs_modulus: 1.2e5, "
+      "friction_angle: 30 deg, cohesion: 1 kPa, grain_size: 1e-3}\n";
+  const std::string rubber =
+      "  - {name: rubber, type: elastic, density: 1000, youngs_modulus: 1e5}\n";
   const std::string rock = "  - {name: rock, type: rigid, density: 2600, stiffness: 1e5}\n";
   const std::string moving = "velocity: ['0.1*sin(y)', '0.1*sin(z)', '0.1*sin(x)']";
   const std::string whole = box(0, c, c, c);
   const double far = 3.0 * c + 20;
-  const auto away = [&](const std::string& name) { return fmt::format("  - {{name: away, material: {}, {}}}\n", name, box(far, far + 4, 4, 4)); };
-  const auto within = [&](const std::string& name) { return fmt::format("  - {{name: within, material: {}, {}}}\n", name, whole); };
+  const auto away = [&](const std::string& name) {
+    return fmt::format("  - {{name: away, material: {}, {}}}\n", name, box(far, far + 4, 4, 4));
+  };
+  const auto within = [&](const std::string& name) {
+    return fmt::format("  - {{name: within, material: {}, {}}}\n", name, whole);
+  };
   const Forcing fields{"every field, in every advection step", "", "", "", true};
   return {
-      {"water", water, "name: block, material: water, " + moving + ", " + whole, "", far,
+      {"water",
+       water,
+       "name: block, material: water, " + moving + ", " + whole,
+       "",
+       far,
        {{"soil far away", soil, away("soil"), ""},
         {"soil in all of it", soil, within("soil"), ""},
         {"a rigid body far away", rock, away("rock"), ""},
         {"an elastic body far away", rubber, away("rubber"), ""},
         {"double precision", "", "", "pair_precision: double"},
         fields}},
-      {"soil", soil, "name: block, material: soil, " + moving + ", " + whole, "", far,
+      {"soil",
+       soil,
+       "name: block, material: soil, " + moving + ", " + whole,
+       "",
+       far,
        {{"water far away", water, away("water"), ""},
         {"water in all of it", water, within("water"), ""},
         {"a rigid body far away", rock, away("rock"), ""},
         {"transport velocity of soil", "", "", "transport_velocity_soil: true"},
         fields}},
-      {"solid", rubber, "name: block, material: rubber, " + moving + ", " + whole, "", far,
+      {"solid",
+       rubber,
+       "name: block, material: rubber, " + moving + ", " + whole,
+       "",
+       far,
        {{"contact: another body far away", "", away("rubber"), ""},
         {"contact with itself", "", "", "", false, ", self_contact: true"},
         {"water far away", water, away("water"), ""},
@@ -104,22 +127,28 @@ double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_P
 /// A built scene that can be stepped for a while.
 class Stand {
  public:
-  Stand(const std::string& text, bool all_fields) : model_(read_deck_text(text)), all_fields_(all_fields), scene_(build()) {
-    plan_ = std::make_unique<Plan<3>>(*scene_.world, all_fields ? all_wishes(*scene_.world) : std::vector<Wish>{});
+  Stand(const std::string& text, bool all_fields)
+      : model_(read_deck_text(text)), all_fields_(all_fields), scene_(build()) {
+    plan_ = std::make_unique<Plan<3>>(*scene_.world,
+                                      all_fields ? all_wishes(*scene_.world) : std::vector<Wish>{});
     stepper_ = std::make_unique<Stepper<3>>(*scene_.world, *plan_);
     stepper_->run(0.0, {[] { return false; }});  // the first lists
   }
 
-  /// Steps for about so many seconds; keeps the least processor time for a second of the scene: steps differ in length.
+  /// Steps for about so many seconds; keeps the least processor time for a second of the scene:
+  /// steps differ in length.
   void run(double seconds) {
     const auto start = std::chrono::steady_clock::now();
     const double before = processor_seconds();
     const Index steps = scene_.world->clock.acoustic_steps;
     const double begun = scene_.world->clock.time;
-    stepper_->run(model_.end_time, {[&] {
-      if (all_fields_) plan_->run(Stage::observe);
-      return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() < seconds || scene_.world->clock.acoustic_steps == steps;
-    }});
+    stepper_->run(
+        model_.end_time, {[&] {
+          if (all_fields_) plan_->run(Stage::observe);
+          return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() <
+                     seconds ||
+                 scene_.world->clock.acoustic_steps == steps;
+        }});
     const double spent = processor_seconds() - before;
     const double each = spent / (scene_.world->clock.time - begun);
     second_s_ = second_s_ == 0 ? each : std::min(second_s_, each);
@@ -171,19 +200,25 @@ std::string list_of(const std::vector<std::string>& names) {
 }  // namespace
 
 int bench_effects_command(const BenchOptions& options) {
-  const std::vector<EffectScene> scenes = effect_scenes(options.sizes.empty() ? 30'000 : options.sizes.front());
+  const std::vector<EffectScene> scenes =
+      effect_scenes(options.sizes.empty() ? 30'000 : options.sizes.front());
   std::vector<std::string> names;
   for (const EffectScene& s : scenes) names.push_back(s.name);
   for (const std::string& wanted : options.scenes)
     if (std::find(names.begin(), names.end(), wanted) == names.end())
-      throw Error(ExitCode::usage, fmt::format("there is no scene '{}' for --effects; {}", wanted, suggestion(wanted, names)));
+      throw Error(ExitCode::usage, fmt::format("there is no scene '{}' for --effects; {}", wanted,
+                                               suggestion(wanted, names)));
   set_threads(1);
   nlohmann::ordered_json j = {{"version", version()}, {"scenes", nlohmann::ordered_json::array()}};
   if (!options.json)
-    fmt::print("one thread; processor time for the same simulated time, least of {} tries of {} s;\n"
-               "each line beside the scene as planned, in turn\n", options.repeats, options.seconds);
+    fmt::print(
+        "one thread; processor time for the same simulated time, least of {} tries of {} s;\n"
+        "each line beside the scene as planned, in turn\n",
+        options.repeats, options.seconds);
   for (const EffectScene& scene : scenes) {
-    if (!options.scenes.empty() && std::find(options.scenes.begin(), options.scenes.end(), scene.name) == options.scenes.end()) continue;
+    if (!options.scenes.empty() &&
+        std::find(options.scenes.begin(), options.scenes.end(), scene.name) == options.scenes.end())
+      continue;
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
     std::size_t width = 0;
     for (const Forcing& f : scene.forcings) width = std::max(width, std::string(f.what).size());
@@ -198,16 +233,29 @@ int bench_effects_command(const BenchOptions& options) {
       const std::set<std::string> before = planned.effects();
       for (const std::string& e : forced.effects())
         if (!before.contains(e)) added.push_back(e);
-      const double time = forced.seconds_per_second() / planned.seconds_per_second(), memory = forced.bytes() / planned.bytes();
-      rows.push_back({{"forced", f.what}, {"step_s", forced.step_seconds()}, {"planned_step_s", planned.step_seconds()}, {"time_ratio", time},
-                      {"memory_ratio", memory}, {"fields", forced.fields()}, {"planned_fields", planned.fields()},
-                      {"particles", forced.particles()}, {"planned_particles", planned.particles()}, {"effects_added", added}});
+      const double time = forced.seconds_per_second() / planned.seconds_per_second(),
+                   memory = forced.bytes() / planned.bytes();
+      rows.push_back({{"forced", f.what},
+                      {"step_s", forced.step_seconds()},
+                      {"planned_step_s", planned.step_seconds()},
+                      {"time_ratio", time},
+                      {"memory_ratio", memory},
+                      {"fields", forced.fields()},
+                      {"planned_fields", planned.fields()},
+                      {"particles", forced.particles()},
+                      {"planned_particles", planned.particles()},
+                      {"effects_added", added}});
       if (options.json) continue;
       if (std::exchange(first, false))
-        fmt::print("\n{}: {} particles, {} effects, {} fields, {:.1f} MB, {:.2f} ms a step\n  {:<{}}  {:>6}  {:>6}  {:>6}  effects added\n", scene.name, planned.particles(),
-                   before.size(), planned.fields(), planned.bytes() / 1e6, 1e3 * planned.step_seconds(), "forced", width, "time", "memory", "fields");
+        fmt::print(
+            "\n{}: {} particles, {} effects, {} fields, {:.1f} MB, {:.2f} ms a step\n  {:<{}}  "
+            "{:>6}  {:>6}  {:>6}  effects added\n",
+            scene.name, planned.particles(), before.size(), planned.fields(), planned.bytes() / 1e6,
+            1e3 * planned.step_seconds(), "forced", width, "time", "memory", "fields");
       fmt::print("  {:<{}}  {:>5.2f}x  {:>5.2f}x  {:>6}  {}: {}\n", f.what, width, time, memory,
-                 fmt::format("{:+}", static_cast<long>(forced.fields()) - static_cast<long>(planned.fields())), added.size(), list_of(added));
+                 fmt::format("{:+}", static_cast<long>(forced.fields()) -
+                                         static_cast<long>(planned.fields())),
+                 added.size(), list_of(added));
       std::cout.flush();
     }
     j["scenes"].push_back({{"name", scene.name}, {"rows", std::move(rows)}});

@@ -17,7 +17,8 @@ BoundaryMesh boundary_mesh(const Model& model, double time) {
     if (!solid) continue;
     const SurfaceMesh mesh = surface_mesh(*solid, 2 * model.resolution, model.dimension);
     const auto first = static_cast<Index>(all.points.size());
-    for (const Vec3& p : mesh.points) all.points.push_back(wall->motion ? wall->motion->position(p, time) : p);
+    for (const Vec3& p : mesh.points)
+      all.points.push_back(wall->motion ? wall->motion->position(p, time) : p);
     const auto add = [&](const auto& cells) {
       for (const auto& cell : cells) {
         for (const std::int32_t c : cell) all.corners.push_back(first + c);

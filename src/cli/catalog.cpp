@@ -6,8 +6,8 @@
 
 #include "deck/around.h"
 #include "deck/copies.h"
-#include "deck/motion.h"
 #include "deck/model.h"
+#include "deck/motion.h"
 #include "effects/effect.h"
 #include "particles/fields.h"
 
@@ -34,18 +34,26 @@ std::string flow_text(const Node& node) {
 }
 
 KeyFacts facts_of(const Key& key, const Node& defaults) {
-  KeyFacts f{key.name(), key.sentence(), key.equation(), key.type().words(key), "", key.required(), key.is_changeable_on_resume()};
+  KeyFacts f{key.name(),
+             key.sentence(),
+             key.equation(),
+             key.type().words(key),
+             "",
+             key.required(),
+             key.is_changeable_on_resume()};
   if (key.range().bounded()) f.accepts += ", " + key.range().words(key.unit());
   if (key.required()) return f;
   if (const Entry* given = defaults.find(key.name())) {
     f.otherwise = flow_text(given->value);
-    const bool with_unit = given->value.kind == Node::Kind::scalar && f.otherwise != "auto" && !key.unit().same_dimension(unit::none);
+    const bool with_unit = given->value.kind == Node::Kind::scalar && f.otherwise != "auto" &&
+                           !key.unit().same_dimension(unit::none);
     if (with_unit) f.otherwise += std::string(" ") + key.unit().symbol;
   }
   return f;
 }
 
-CatalogEntry entry_of(const std::string& name, const std::string& sentence, const std::vector<SchemaPart>& parts) {
+CatalogEntry entry_of(const std::string& name, const std::string& sentence,
+                      const std::vector<SchemaPart>& parts) {
   CatalogEntry e{name, sentence, {}, {}};
   Node defaults = Node::map();
   write_mapping(defaults, parts, {});
@@ -65,7 +73,8 @@ CatalogEntry section() {
   return e;
 }
 
-CatalogGroup types(const RegistryCore& registry, const std::string& heading, const std::string& sentence) {
+CatalogGroup types(const RegistryCore& registry, const std::string& heading,
+                   const std::string& sentence) {
   CatalogGroup g{registry.interface_name(), heading, sentence, {}};
   for (const RegistryEntry& type : registry.entries()) {
     const std::shared_ptr<void> object = type.create();
@@ -78,23 +87,43 @@ CatalogGroup types(const RegistryCore& registry, const std::string& heading, con
 }
 
 CatalogGroup effects() {
-  CatalogGroup g{"effect", "effects", "Terms of the equations, selected by what the scene holds. `check --explain` shows which of them a deck calls for.", {}};
+  CatalogGroup g{"effect",
+                 "effects",
+                 "Terms of the equations, selected by what the scene holds. `check --explain` "
+                 "shows which of them a deck calls for.",
+                 {}};
   for (const EffectRegistry::Entry& e : EffectRegistry::all())
-    g.entries.push_back({e.info.name, e.info.sentence, {},
-                         {{"stage", stage_name(e.info.stage)}, {"equations", e.info.equations},
-                          {"runs", e.info.supporting ? "when an effect, a probe or a frame reads what it computes" : "whenever the scene has what it acts on"},
-                          {"without it", e.info.when_off.empty() ? "cannot be switched off" : e.info.when_off}}});
+    g.entries.push_back(
+        {e.info.name,
+         e.info.sentence,
+         {},
+         {{"stage", stage_name(e.info.stage)},
+          {"equations", e.info.equations},
+          {"runs", e.info.supporting ? "when an effect, a probe or a frame reads what it computes"
+                                     : "whenever the scene has what it acts on"},
+          {"without it", e.info.when_off.empty() ? "cannot be switched off" : e.info.when_off}}});
   return g;
 }
 
 CatalogGroup fields_group() {
-  constexpr const char* types[] = {"a number", "a vector", "a symmetric tensor", "a whole number", "a whole number"};
+  constexpr const char* types[] = {"a number", "a vector", "a symmetric tensor", "a whole number",
+                                   "a whole number"};
   static_assert(std::size(types) == static_cast<std::size_t>(FieldType::identity) + 1);
-  constexpr const char* lifetimes[] = {"state: evolves, is saved", "reference: fixed at t = 0, is saved", "derived: computed when something reads it"};
-  CatalogGroup g{"field", "fields", "Values of each particle, by the names that `output.frames.fields` and frames use.", {}};
+  constexpr const char* lifetimes[] = {"state: evolves, is saved",
+                                       "reference: fixed at t = 0, is saved",
+                                       "derived: computed when something reads it"};
+  CatalogGroup g{
+      "field",
+      "fields",
+      "Values of each particle, by the names that `output.frames.fields` and frames use.",
+      {}};
   for (const FieldSpec* f : fields::all)
-    g.entries.push_back({f->name, f->sentence, {},
-                         {{"unit", f->unit.symbol}, {"kind", types[static_cast<int>(f->type)]}, {"lifetime", lifetimes[static_cast<int>(f->lifetime)]}}});
+    g.entries.push_back({f->name,
+                         f->sentence,
+                         {},
+                         {{"unit", f->unit.symbol},
+                          {"kind", types[static_cast<int>(f->type)]},
+                          {"lifetime", lifetimes[static_cast<int>(f->lifetime)]}}});
   return g;
 }
 
@@ -103,15 +132,24 @@ CatalogGroup fields_group() {
 std::vector<CatalogGroup> catalog() {
   // Taken in before bodies are read, and so no key that they declare.
   CatalogEntry body = section<Body>();
-  body.keys.push_back({"copies", "makes many bodies of this one", "", "a mapping of the keys of 'copies'", "none"});
+  body.keys.push_back(
+      {"copies", "makes many bodies of this one", "", "a mapping of the keys of 'copies'", "none"});
   body.keys.push_back({"around", around_sentence, "", "a list of names of bodies", "none"});
-  return {{"section", "deck sections", "The keys of the deck and of the mappings in it.",
-           {section<Model>(), body, section<Copies>(), section<Motion>(), section<Waves>(), section<Output>(), section<Frames>(), section<Numerics>(), section<Relaxation>(), section<Expect>()}},
-          types(Registry<MaterialSpec>::get(), "materials", "What bodies are made of: entries of `materials`."),
+  return {{"section",
+           "deck sections",
+           "The keys of the deck and of the mappings in it.",
+           {section<Model>(), body, section<Copies>(), section<Motion>(), section<Waves>(),
+            section<Output>(), section<Frames>(), section<Numerics>(), section<Relaxation>(),
+            section<Expect>()}},
+          types(Registry<MaterialSpec>::get(), "materials",
+                "What bodies are made of: entries of `materials`."),
           types(Registry<Shape>::get(), "shapes", "Regions of space, for bodies and walls."),
-          types(Registry<BoundarySpec>::get(), "boundaries", "Borders of the scene: entries of `boundaries`."),
-          types(Registry<ProbeSpec>::get(), "probes", "What is measured while the scene runs: entries of `probes`."),
-          effects(), fields_group()};
+          types(Registry<BoundarySpec>::get(), "boundaries",
+                "Borders of the scene: entries of `boundaries`."),
+          types(Registry<ProbeSpec>::get(), "probes",
+                "What is measured while the scene runs: entries of `probes`."),
+          effects(),
+          fields_group()};
 }
 
 }  // namespace sphgeo

@@ -1,5 +1,6 @@
 #pragma once
-// What decks and plans are made of, from the declarations themselves: for `list`, `show` and `reference`.
+// What decks and plans are made of, from the declarations themselves: for `list`, `show` and
+// `reference`.
 
 #include <string>
 #include <utility>
@@ -10,9 +11,9 @@ namespace sphgeo {
 /// One key of a type or section.
 struct KeyFacts {
   std::string name, sentence;
-  std::string equation;  ///< of the paper; "" when there is none
-  std::string accepts;   ///< what the deck may hold here: kind, unit, range
-  std::string otherwise; ///< the default as a deck may hold it; "" when there is none
+  std::string equation;   ///< of the paper; "" when there is none
+  std::string accepts;    ///< what the deck may hold here: kind, unit, range
+  std::string otherwise;  ///< the default as a deck may hold it; "" when there is none
   bool required = false;
   bool changeable = false;  ///< may differ when a run is resumed
 };
@@ -27,9 +28,9 @@ struct CatalogEntry {
 
 /// Entries of one kind, sorted as they are shown.
 struct CatalogGroup {
-  std::string kind;     ///< "shape", "section", "effect" ...
-  std::string heading;  ///< "shapes"
-  std::string sentence; ///< what they are
+  std::string kind;      ///< "shape", "section", "effect" ...
+  std::string heading;   ///< "shapes"
+  std::string sentence;  ///< what they are
   std::vector<CatalogEntry> entries;
 };
 

@@ -11,6 +11,7 @@
 #include "cli/preview.h"
 #include "cli/recorder.h"
 #include "cli/relaxation_report.h"
+#include "cli/wishes.h"
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -28,18 +29,27 @@ nlohmann::ordered_json plan_json(const auto& world, const auto& plan) {
   nlohmann::ordered_json j;
   j["plan"] = nlohmann::ordered_json::array();
   for (const auto& e : plan.effects())
-    j["plan"].push_back({{"stage", stage_name(e.info.stage)}, {"name", e.info.name}, {"equations", e.info.equations},
-                         {"acts_on", e.effect->acts_on()}, {"because", e.because}});
+    j["plan"].push_back({{"stage", stage_name(e.info.stage)},
+                         {"name", e.info.name},
+                         {"equations", e.info.equations},
+                         {"acts_on", e.effect->acts_on()},
+                         {"because", e.because}});
   j["unused"] = nlohmann::ordered_json::array();
-  for (const auto& u : plan.unused()) j["unused"].push_back({{"name", u.name}, {"because", u.because}});
+  for (const auto& u : plan.unused())
+    j["unused"].push_back({{"name", u.name}, {"because", u.because}});
   j["lists"] = nlohmann::ordered_json::array();
   for (const auto& [key, list] : world.lists())
-    j["lists"].push_back({{"target", key.first}, {"source", key.second}, {"pairs", list.pairs()}, {"bytes", list.bytes()}});
+    j["lists"].push_back({{"target", key.first},
+                          {"source", key.second},
+                          {"pairs", list.pairs()},
+                          {"bytes", list.bytes()}});
   j["fields"] = nlohmann::ordered_json::array();
   constexpr const char* lifetimes[] = {"state", "reference", "derived"};
   for (const auto& set : world.sets())
     for (const auto& [name, field] : set->fields())
-      j["fields"].push_back({{"set", set->name()}, {"name", name}, {"unit", field->spec().unit.symbol},
+      j["fields"].push_back({{"set", set->name()},
+                             {"name", name},
+                             {"unit", field->spec().unit.symbol},
                              {"lifetime", lifetimes[static_cast<int>(field->spec().lifetime)]}});
   j["memory_bytes"] = world.bytes() + plan.bytes();
   return j;
@@ -48,36 +58,44 @@ nlohmann::ordered_json plan_json(const auto& world, const auto& plan) {
 void print_plan(const nlohmann::ordered_json& j) {
   std::cout << fmt::format("\nplan: what runs, and why\n");
   for (const auto& e : j["plan"])
-    std::cout << fmt::format("  {:<13} {:<24} {:<22} {:<18} {}\n", e["stage"].get<std::string>(), e["name"].get<std::string>(),
-               e["equations"].get<std::string>(), e["acts_on"].get<std::string>(), e["because"].get<std::string>());
+    std::cout << fmt::format("  {:<13} {:<24} {:<22} {:<18} {}\n", e["stage"].get<std::string>(),
+                             e["name"].get<std::string>(), e["equations"].get<std::string>(),
+                             e["acts_on"].get<std::string>(), e["because"].get<std::string>());
   std::cout << fmt::format("not used\n");
   for (const auto& u : j["unused"])
-    std::cout << fmt::format("  {:<38} {}\n", u["name"].get<std::string>(), u["because"].get<std::string>());
+    std::cout << fmt::format("  {:<38} {}\n", u["name"].get<std::string>(),
+                             u["because"].get<std::string>());
   std::cout << fmt::format("neighbor lists\n");
   for (const auto& l : j["lists"])
-    std::cout << fmt::format("  {} -> {}: {} pairs, {}\n", l["target"].get<std::string>(), l["source"].get<std::string>(),
-               l["pairs"].get<long>(), bytes_text(l["bytes"].get<double>()));
+    std::cout << fmt::format("  {} -> {}: {} pairs, {}\n", l["target"].get<std::string>(),
+                             l["source"].get<std::string>(), l["pairs"].get<long>(),
+                             bytes_text(l["bytes"].get<double>()));
   std::cout << fmt::format("fields\n");
   std::string set;
   for (const auto& f : j["fields"]) {
-    if (f["set"] != set) std::cout << fmt::format("{}  {}:", set.empty() ? "" : "\n", f["set"].get<std::string>());
+    if (f["set"] != set)
+      std::cout << fmt::format("{}  {}:", set.empty() ? "" : "\n", f["set"].get<std::string>());
     set = f["set"];
-    std::cout << fmt::format(" {}({})", f["name"].get<std::string>(), f["lifetime"].get<std::string>());
+    std::cout << fmt::format(" {}({})", f["name"].get<std::string>(),
+                             f["lifetime"].get<std::string>());
   }
   std::cout << fmt::format("\nmemory {}\n", bytes_text(j["memory_bytes"].get<double>()));
 }
 
 /// What a run would cost; with the time unless `--no-calibrate`. Moves the world on.
 template <int Dim>
-std::optional<Forecast> forecast_of(World<Dim>& world, Plan<Dim>& plan, const SoundSpeed& sound, const std::vector<Wish>& wishes,
-                                    std::uint64_t base, const CheckOptions& options, clock_type::time_point start) {
+std::optional<Forecast> forecast_of(World<Dim>& world, Plan<Dim>& plan, const SoundSpeed& sound,
+                                    const std::vector<Wish>& wishes, std::uint64_t base,
+                                    const CheckOptions& options, clock_type::time_point start) {
   if (world.sets().empty()) return std::nullopt;
   const double started = std::chrono::duration<double>(clock_type::now() - start).count();
   const ForecastBasis basis(world, plan, sound, wishes, base);
   std::optional<MeasuredCosts> costs;
   if (options.calibrate && basis.advection_steps() > 0) {
     costs = measure_costs<Dim>(world, plan, wishes, started, basis.advection_steps());
-    if (!costs) std::cerr << "warning: the scene does not survive its first steps, so that nothing is said about the time\n";
+    if (!costs)
+      std::cerr << "warning: the scene does not survive its first steps, so that nothing is said "
+                   "about the time\n";
   }
   return basis(costs);
 }
@@ -89,7 +107,8 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
   Scene<Dim> scene = build_scene<Dim>(model, found, Filling::draft);
   check_scene(scene, found);
   // Also of a scene with mistakes: there a picture helps most.
-  const std::string preview = options.preview.empty() ? "" : write_preview<Dim>(*scene.world, options.preview);
+  const std::string preview =
+      options.preview.empty() ? "" : write_preview<Dim>(*scene.world, options.preview);
   if (found.has_errors()) throw DeckError(found);
   if (!found.items().empty()) std::cerr << found.render();
   if (!preview.empty()) std::cerr << fmt::format("{}: {}\n", printable(options.preview), preview);
@@ -112,33 +131,50 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
     total += set->size();
   }
   j["particles"] = particles;
-  j["sound_speed"] = {{"value", scene.sound.value}, {"max_speed", scene.sound.max_speed}, {"because", scene.sound.because}};
+  j["sound_speed"] = {{"value", scene.sound.value},
+                      {"max_speed", scene.sound.max_speed},
+                      {"because", scene.sound.because}};
   const StepLimits steps = world.sets().empty() ? StepLimits{} : plan.limits();
   const bool stepping = std::isfinite(steps.advection) && std::isfinite(steps.acoustic);
   if (stepping) {
-    j["time_steps"] = {{"advection", steps.advection}, {"acoustic", steps.acoustic}, {"acoustic_by", steps.acoustic_by}};
+    j["time_steps"] = {{"advection", steps.advection},
+                       {"acoustic", steps.acoustic},
+                       {"acoustic_by", steps.acoustic_by}};
     if (std::isfinite(steps.solid)) j["time_steps"]["solid"] = steps.solid;
   }
-  const std::optional<Forecast> forecast = forecast_of<Dim>(world, plan, scene.sound, wishes, base, options, start);
+  const std::optional<Forecast> forecast =
+      forecast_of<Dim>(world, plan, scene.sound, wishes, base, options, start);
   if (forecast) j["forecast"] = to_json(*forecast);
   if (options.json) {
     std::cout << j.dump(2) << "\n";
     return 0;
   }
-  std::cout << fmt::format("{}: {} dimensions, spacing {} m, {} s\n", printable(model.title.empty() ? options.deck : model.title), Dim, model.resolution, model.end_time);
-  for (const auto& set : world.sets()) std::cout << fmt::format("  {:<10} {:>10} particles\n", set->name(), set->size());
-  for (const auto& [name, n] : scene.body_particles) std::cout << fmt::format("    body '{}': {}\n", name, n);
-  for (const auto& [name, n] : scene.boundary_particles) std::cout << fmt::format("    boundary '{}': {}\n", name, n);
-  if (scene.pore_water) std::cout << fmt::format("  {}\n", printable(relaxation_line(model, *scene.pore_water)));
+  std::cout << fmt::format("{}: {} dimensions, spacing {} m, {} s\n",
+                           printable(model.title.empty() ? options.deck : model.title), Dim,
+                           model.resolution, model.end_time);
+  for (const auto& set : world.sets())
+    std::cout << fmt::format("  {:<10} {:>10} particles\n", set->name(), set->size());
+  for (const auto& [name, n] : scene.body_particles)
+    std::cout << fmt::format("    body '{}': {}\n", name, n);
+  for (const auto& [name, n] : scene.boundary_particles)
+    std::cout << fmt::format("    boundary '{}': {}\n", name, n);
+  if (scene.pore_water)
+    std::cout << fmt::format("  {}\n", printable(relaxation_line(model, *scene.pore_water)));
   if (world.find("water"))
-    std::cout << fmt::format("  speed of sound {:.4g} m/s: {}\n", scene.sound.value, scene.sound.because);
+    std::cout << fmt::format("  speed of sound {:.4g} m/s: {}\n", scene.sound.value,
+                             scene.sound.because);
   if (stepping)
-    std::cout << fmt::format("  time steps at the start: advection {:.3g} s, acoustic {:.3g} s, bounded by {}{}\n", steps.advection, steps.acoustic, steps.acoustic_by,
-                             std::isfinite(steps.solid) ? fmt::format(", solids {:.3g} s", steps.solid) : "");
+    std::cout << fmt::format(
+        "  time steps at the start: advection {:.3g} s, acoustic {:.3g} s, bounded by {}{}\n",
+        steps.advection, steps.acoustic, steps.acoustic_by,
+        std::isfinite(steps.solid) ? fmt::format(", solids {:.3g} s", steps.solid) : "");
   if (options.explain) print_plan(j);
   if (forecast) std::cout << fmt::format("{}", render_forecast(*forecast, model.resolution));
   if (const double entering = entering_particles(model); entering > 0)
-    std::cout << fmt::format("inlets bring in about {:.3g} particles of water until the end: the forecast takes all of them for the memory, half of them for the time\n", entering);
+    std::cout << fmt::format(
+        "inlets bring in about {:.3g} particles of water until the end: the forecast takes all of "
+        "them for the memory, half of them for the time\n",
+        entering);
   std::cout << fmt::format("the deck is sound\n");
   return 0;
 }

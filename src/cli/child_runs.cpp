@@ -29,9 +29,11 @@ pid_t start(const ChildRun& run) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 1, run.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  posix_spawn_file_actions_addopen(&actions, 1, run.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                   0644);
   posix_spawn_file_actions_adddup2(&actions, 1, 2);
-  // A group of its own: Ctrl-C at the terminal reaches it once, as the SIGTERM sent here, not twice.
+  // A group of its own: Ctrl-C at the terminal reaches it once, as the SIGTERM sent here, not
+  // twice.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -51,8 +53,10 @@ void end(ChildRun& run, int status) {
 
 }  // namespace
 
-std::string run_children(std::vector<ChildRun>& runs, int jobs, const std::function<std::string()>& stop_reason,
-                         const std::function<void(std::size_t)>& before, const std::function<void(std::size_t)>& ready) {
+std::string run_children(std::vector<ChildRun>& runs, int jobs,
+                         const std::function<std::string()>& stop_reason,
+                         const std::function<void(std::size_t)>& before,
+                         const std::function<void(std::size_t)>& ready) {
   std::map<pid_t, std::size_t> running;
   std::size_t next = 0;
   std::string stopped;
@@ -65,7 +69,8 @@ std::string run_children(std::vector<ChildRun>& runs, int jobs, const std::funct
         stopped = stop_reason();
         if (!stopped.empty()) stop_all();
       }
-      if (stopped.empty() && next < runs.size() && running.size() < static_cast<std::size_t>(jobs)) {
+      if (stopped.empty() && next < runs.size() &&
+          running.size() < static_cast<std::size_t>(jobs)) {
         before(next);
         running.emplace(start(runs[next]), next);
         ++next;

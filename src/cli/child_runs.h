@@ -17,11 +17,13 @@ struct ChildRun {
   bool finished = false;
 };
 
-/// Starts the runs in order, `jobs` at a time. `stop_reason` is asked ten times a second: once it says why, the
-/// running ones get SIGTERM (they keep a checkpoint), no more are started, and the reason is returned; else "".
-/// `ready` is called with each run that has ended, `before` just before one starts. Throws IoError when a process
-/// or log cannot be made.
-std::string run_children(std::vector<ChildRun>& runs, int jobs, const std::function<std::string()>& stop_reason,
-                         const std::function<void(std::size_t)>& before, const std::function<void(std::size_t)>& ready);
+/// Starts the runs in order, `jobs` at a time. `stop_reason` is asked ten times a second: once it
+/// says why, the running ones get SIGTERM (they keep a checkpoint), no more are started, and the
+/// reason is returned; else "". `ready` is called with each run that has ended, `before` just
+/// before one starts. Throws IoError when a process or log cannot be made.
+std::string run_children(std::vector<ChildRun>& runs, int jobs,
+                         const std::function<std::string()>& stop_reason,
+                         const std::function<void(std::size_t)>& before,
+                         const std::function<void(std::size_t)>& ready);
 
 }  // namespace sphgeo

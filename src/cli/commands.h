@@ -13,13 +13,13 @@ struct RunOptions {
   std::string deck;
   std::string folder;
   std::vector<std::string> set;
-  int threads = 0;          ///< 0: a sensible number for the scene
+  int threads = 0;  ///< 0: a sensible number for the scene
   bool overwrite = false;
-  bool resume = false;      ///< go on from the checkpoint in the folder, if there is one
+  bool resume = false;  ///< go on from the checkpoint in the folder, if there is one
   RunLimits limits;
-  bool verify = false;      ///< exit 4 when an `expect` is not met
+  bool verify = false;  ///< exit 4 when an `expect` is not met
   bool quiet = false;
-  bool report = true;       ///< write report.html at the end
+  bool report = true;  ///< write report.html at the end
 };
 int run_command(const RunOptions& options);
 
@@ -28,9 +28,9 @@ struct CheckOptions {
   std::vector<std::string> set;
   bool explain = false;
   bool json = false;
-  std::string preview;      ///< a PNG of the scene; empty: none
-  bool calibrate = true;    ///< time a few steps for the forecast
-  int threads = 0;          ///< that the run would have; 0: a sensible number for the scene
+  std::string preview;    ///< a PNG of the scene; empty: none
+  bool calibrate = true;  ///< time a few steps for the forecast
+  int threads = 0;        ///< that the run would have; 0: a sensible number for the scene
 };
 int check_command(const CheckOptions& options);
 
@@ -45,9 +45,9 @@ struct RelaxOptions {
   std::string deck;
   std::string folder;
   std::vector<std::string> set;
-  int threads = 0;          ///< 0: all that the machine has
+  int threads = 0;  ///< 0: all that the machine has
   bool overwrite = false;
-  bool verify = false;      ///< exit 4 when a claim about the relaxation is not met
+  bool verify = false;  ///< exit 4 when a claim about the relaxation is not met
   bool quiet = false;
 };
 /// Relaxes the water in soil and stores it. Throws Error (usage) when the deck has none.
@@ -55,11 +55,12 @@ int relax_command(const RelaxOptions& options);
 
 struct ExportOptions {
   std::string deck;
-  std::string name;                ///< of a body or a wall
-  std::string output;              ///< an STL file
+  std::string name;    ///< of a body or a wall
+  std::string output;  ///< an STL file
   std::vector<std::string> set;
-  std::optional<double> spacing;   ///< of the grid that finds the surface, m; empty: half the resolution
-  bool overwrite = false;          ///< whether the file may exist
+  std::optional<double>
+      spacing;             ///< of the grid that finds the surface, m; empty: half the resolution
+  bool overwrite = false;  ///< whether the file may exist
 };
 /// Writes the surface of a body or a wall as binary STL. Throws Error (usage), DeckError, IoError.
 int export_command(const ExportOptions& options);
@@ -75,8 +76,8 @@ struct StudyOptions {
   std::optional<double> max_hours;
   bool quiet = false;
 };
-/// Runs a deck with different settings and says what accuracy costs in time. Runs that are in the folder
-/// already are used again. Throws Error (usage), DeckError, IoError.
+/// Runs a deck with different settings and says what accuracy costs in time. Runs that are in the
+/// folder already are used again. Throws Error (usage), DeckError, IoError.
 int study_command(const StudyOptions& options);
 
 struct CompareOptions {
@@ -85,20 +86,20 @@ struct CompareOptions {
   std::string tolerances;  ///< a YAML file; empty: the defaults
   bool update = false;     ///< write the run as the baseline
   bool json = false;
-  bool all = false;        ///< list all that was compared
+  bool all = false;  ///< list all that was compared
 };
-/// Compares a run with another or with a baseline; exit 4 when one difference is above its tolerance. Throws
-/// Error (usage), DeckError, IoError.
+/// Compares a run with another or with a baseline; exit 4 when one difference is above its
+/// tolerance. Throws Error (usage), DeckError, IoError.
 int compare_command(const CompareOptions& options);
 
 struct BenchOptions {
   bool json = false;
-  std::vector<std::string> scenes;   ///< empty: all
-  std::vector<long> sizes;           ///< particles; empty: 20 000, 150 000, 1 000 000
-  std::string precision = "both";    ///< single | double | both
-  double seconds = 2;                ///< of measuring per repeat
+  std::vector<std::string> scenes;  ///< empty: all
+  std::vector<long> sizes;          ///< particles; empty: 20 000, 150 000, 1 000 000
+  std::string precision = "both";   ///< single | double | both
+  double seconds = 2;               ///< of measuring per repeat
   int repeats = 5;
-  bool effects = false;              ///< what effects would cost that the scenes do not call for
+  bool effects = false;  ///< what effects would cost that the scenes do not call for
 };
 int bench_command(const BenchOptions& options);
 /// The part --effects of it.

@@ -17,23 +17,34 @@ int compare_command(const CompareOptions& options) {
   const RunData run = read_run_data(options.run);
   if (options.update) {
     if (std::filesystem::is_directory(options.baseline))
-      throw Error(ExitCode::usage, printable(options.baseline) + ": --update writes a file, and this is a folder");
+      throw Error(ExitCode::usage,
+                  printable(options.baseline) + ": --update writes a file, and this is a folder");
     if (run.status != "done")
-      throw Error(ExitCode::usage, printable(options.run) + ": a run that is '" + printable(run.status) + "' is no baseline");
+      throw Error(ExitCode::usage, printable(options.run) + ": a run that is '" +
+                                       printable(run.status) + "' is no baseline");
     write_baseline(options.baseline, run);
-    std::cerr << fmt::format("{}: written from {}\n", printable(options.baseline), printable(options.run));
+    std::cerr << fmt::format("{}: written from {}\n", printable(options.baseline),
+                             printable(options.run));
     return 0;
   }
   const RunData baseline = read_either(options.baseline);
-  const Tolerances tolerances = options.tolerances.empty() ? Tolerances{} : read_tolerances(options.tolerances);
+  const Tolerances tolerances =
+      options.tolerances.empty() ? Tolerances{} : read_tolerances(options.tolerances);
   const std::vector<Difference> differences = compare_runs(run, baseline, tolerances);
-  const auto failed = std::count_if(differences.begin(), differences.end(), [](const Difference& d) { return !d.pass; });
+  const auto failed = std::count_if(differences.begin(), differences.end(),
+                                    [](const Difference& d) { return !d.pass; });
   if (options.json) {
-    const nlohmann::ordered_json out = {{"run", options.run}, {"baseline", options.baseline}, {"pass", failed == 0}, {"differences", to_json(differences)}};
+    const nlohmann::ordered_json out = {{"run", options.run},
+                                        {"baseline", options.baseline},
+                                        {"pass", failed == 0},
+                                        {"differences", to_json(differences)}};
     std::cout << out.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << "\n";
   } else {
-    std::cout << render_differences(differences, options.all ? std::numeric_limits<std::size_t>::max() : 3);
-    std::cout << fmt::format("{} of {} compared are within tolerance\n", static_cast<std::ptrdiff_t>(differences.size()) - failed, differences.size());
+    std::cout << render_differences(differences,
+                                    options.all ? std::numeric_limits<std::size_t>::max() : 3);
+    std::cout << fmt::format("{} of {} compared are within tolerance\n",
+                             static_cast<std::ptrdiff_t>(differences.size()) - failed,
+                             differences.size());
   }
   return static_cast<int>(failed == 0 ? ExitCode::done : ExitCode::mismatch);
 }

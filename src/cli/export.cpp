@@ -30,22 +30,30 @@ std::shared_ptr<const Shape> solid_named(const Model& model, const std::string& 
     if (boundary->name == name) return solid;
     names.push_back(boundary->name);
   }
-  throw Error(ExitCode::usage, fmt::format("no body and no wall of the deck is named '{}'; {}", printable(name), printable(suggestion(name, names, "bodies and walls"))));
+  throw Error(ExitCode::usage,
+              fmt::format("no body and no wall of the deck is named '{}'; {}", printable(name),
+                          printable(suggestion(name, names, "bodies and walls"))));
 }
 
 }  // namespace
 
 int export_command(const ExportOptions& options) {
   const Model model = read_deck(options.deck, options.set);
-  if (model.dimension != 3) throw Error(ExitCode::usage, "STL is for scenes in 3D; --set dimension=3 may make one of this deck");
+  if (model.dimension != 3)
+    throw Error(ExitCode::usage,
+                "STL is for scenes in 3D; --set dimension=3 may make one of this deck");
   const auto solid = solid_named(model, options.name);
   const double spacing = options.spacing.value_or(0.5 * model.resolution);
-  if (!(spacing > 0)) throw Error(ExitCode::usage, fmt::format("--spacing {} is no length above zero", exact(spacing)));
+  if (!(spacing > 0))
+    throw Error(ExitCode::usage,
+                fmt::format("--spacing {} is no length above zero", exact(spacing)));
   if (!options.overwrite && std::filesystem::exists(options.output))
-    throw Error(ExitCode::usage, fmt::format("{} exists; --overwrite replaces it", printable(options.output)));
+    throw Error(ExitCode::usage,
+                fmt::format("{} exists; --overwrite replaces it", printable(options.output)));
   SurfaceMesh mesh = surface_mesh(*solid, spacing, 3);
   write_stl(options.output, {std::move(mesh.points), std::move(mesh.triangles)});
-  std::cout << fmt::format("{}: {} triangles\n", printable(options.output), (std::filesystem::file_size(options.output) - 84) / 50);
+  std::cout << fmt::format("{}: {} triangles\n", printable(options.output),
+                           (std::filesystem::file_size(options.output) - 84) / 50);
   return 0;
 }
 

@@ -9,6 +9,7 @@
 #include "cli/commands.h"
 #include "cli/recorder.h"
 #include "cli/run_output.h"
+#include "cli/wishes.h"
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
@@ -67,7 +68,8 @@ struct CoarseCopy {
   Scene<Dim> scene;
   std::unique_ptr<Plan<Dim>> plan;
 
-  CoarseCopy(const Model& original, double wanted) : model(coarse(original, wanted)), scene(build_scene<Dim>(model, found, Filling::draft)) {
+  CoarseCopy(const Model& original, double wanted)
+      : model(coarse(original, wanted)), scene(build_scene<Dim>(model, found, Filling::draft)) {
     std::vector<std::string> names;
     for (const auto& set : scene.world->sets()) names.push_back(set->name());
     plan = std::make_unique<Plan<Dim>>(*scene.world, wishes_of(model, names));
@@ -82,9 +84,9 @@ struct CoarseCopy {
   }
 };
 
-/// Bytes that the process would take at its peak, from two coarse copies. What a particle takes depends on
-/// the spacing to first order only, by the share of particles near a surface: so it is a straight line
-/// through what it is in the two.
+/// Bytes that the process would take at its peak, from two coarse copies. What a particle takes
+/// depends on the spacing to first order only, by the share of particles near a surface: so it is a
+/// straight line through what it is in the two.
 template <int Dim>
 class MemoryRule {
  public:
@@ -97,7 +99,8 @@ class MemoryRule {
         if (c.what != f.what || c.set != f.set) continue;
         const double n = count_of(fine.counts, f.set), m = count_of(coarse.counts, c.set);
         if (!(n > 0 && m > 0) || coarse.spacing <= fine.spacing) continue;
-        rules_.push_back({f.set, f.bytes / n, (f.bytes / n - c.bytes / m) / (fine.spacing - coarse.spacing)});
+        rules_.push_back(
+            {f.set, f.bytes / n, (f.bytes / n - c.bytes / m) / (fine.spacing - coarse.spacing)});
         break;
       }
   }
@@ -105,7 +108,8 @@ class MemoryRule {
     const ParticleCounts counts = expected_particles(model);
     const double finer = std::min(0.0, model.resolution - spacing_);
     double sum = static_cast<double>(resident_memory());
-    for (const Rule& r : rules_) sum += count_of(counts, r.set) * std::max(0.0, r.each + r.slope * finer);
+    for (const Rule& r : rules_)
+      sum += count_of(counts, r.set) * std::max(0.0, r.each + r.slope * finer);
     return sum;
   }
 
@@ -118,14 +122,17 @@ class MemoryRule {
   static Look look(const Model& model, double wanted) {
     CoarseCopy<Dim> copy(model, wanted);
     std::vector<MemoryShare> shares = memory_shares(*copy.scene.world, *copy.plan);
-    for (const auto& set : copy.scene.world->sets()) shares.push_back({"checkpoint", set->name(), saved_bytes(*set)});
+    for (const auto& set : copy.scene.world->sets())
+      shares.push_back({"checkpoint", set->name(), saved_bytes(*set)});
     return {copy.model.resolution, merged(shares), counts_of(*copy.scene.world)};
   }
   /// Shares of the same name and set as one.
   static std::vector<MemoryShare> merged(const std::vector<MemoryShare>& shares) {
     std::vector<MemoryShare> out;
     for (const MemoryShare& s : shares) {
-      const auto same = std::find_if(out.begin(), out.end(), [&](const MemoryShare& o) { return o.what == s.what && o.set == s.set; });
+      const auto same = std::find_if(out.begin(), out.end(), [&](const MemoryShare& o) {
+        return o.what == s.what && o.set == s.set;
+      });
       if (same == out.end()) out.push_back(s);
       else same->bytes += s.bytes;
     }
@@ -168,12 +175,14 @@ void refuse(const Model& model, double available) {
   spacing = std::ceil(spacing / digit) * digit;
   const ParticleCounts counts = expected_particles(model);
   Diagnostics found;
-  found.error("E145", model.place_of("resolution"), "resolution",
-              largest_of(counts) > largest_set && need(model) <= available
-                  ? fmt::format("the scene takes about {:.3g} particles; a set holds at most {:.3g}", total_of(counts), largest_set)
-                  : fmt::format("the scene takes about {:.3g} particles and {} of memory; {} are available", total_of(counts),
-                                bytes_text(need(model)), bytes_text(available)),
-              fmt::format("a resolution of {:.2g} m would fit", spacing));
+  found.error(
+      "E145", model.place_of("resolution"), "resolution",
+      largest_of(counts) > largest_set && need(model) <= available
+          ? fmt::format("the scene takes about {:.3g} particles; a set holds at most {:.3g}",
+                        total_of(counts), largest_set)
+          : fmt::format("the scene takes about {:.3g} particles and {} of memory; {} are available",
+                        total_of(counts), bytes_text(need(model)), bytes_text(available)),
+      fmt::format("a resolution of {:.2g} m would fit", spacing));
   throw DeckError(found);
 }
 
@@ -181,14 +190,20 @@ void refuse(const Model& model, double available) {
 
 void refuse_too_large(const Model& model) {
   const ParticleCounts counts = expected_particles(model);
-  const auto available = static_cast<double>(available_memory()) + static_cast<double>(resident_memory());
+  const auto available =
+      static_cast<double>(available_memory()) + static_cast<double>(resident_memory());
   // What no box bounds is found by the filling, which names the shape.
-  if (!std::isfinite(total_of(counts)) && !std::isfinite(total_of(expected_particles(at_resolution(model, 1e3 * model.resolution))))) return;
+  if (!std::isfinite(total_of(counts)) &&
+      !std::isfinite(total_of(expected_particles(at_resolution(model, 1e3 * model.resolution)))))
+    return;
   // A particle takes some 500 bytes at least, whatever else the scene holds.
-  if (const double entering = entering_particles(model); entering > largest_set || 500 * entering > available) {
+  if (const double entering = entering_particles(model);
+      entering > largest_set || 500 * entering > available) {
     Diagnostics found;
     found.error("E142", model.place_of("boundaries"), "boundaries",
-                fmt::format("inlets bring in about {:.3g} particles until the end; {:.3g} fit into the memory, and a set holds {:.3g}", entering, available / 500, largest_set),
+                fmt::format("inlets bring in about {:.3g} particles until the end; {:.3g} fit into "
+                            "the memory, and a set holds {:.3g}",
+                            entering, available / 500, largest_set),
                 "a coarser resolution, a smaller inlet, a lower share, or an earlier end");
     throw DeckError(found);
   }
@@ -198,36 +213,56 @@ void refuse_too_large(const Model& model) {
 }
 
 template <int Dim>
-ForecastBasis::ForecastBasis(World<Dim>& world, const Plan<Dim>& plan, const SoundSpeed& sound, const std::vector<Wish>& wishes,
-                             std::uint64_t base)
-    : model_(world.model()), counts_(counts_of(world)), shares_(memory_shares(world, plan)), base_(static_cast<double>(base)),
+ForecastBasis::ForecastBasis(World<Dim>& world, const Plan<Dim>& plan, const SoundSpeed& sound,
+                             const std::vector<Wish>& wishes, std::uint64_t base)
+    : model_(world.model()),
+      counts_(counts_of(world)),
+      shares_(memory_shares(world, plan)),
+      base_(static_cast<double>(base)),
       steps_(expected_steps(world, plan, typical_speed(world, sound), model_.end_time)),
       output_(run_output(world, wishes, steps_.advection)) {}
 
-RunFigures ForecastBasis::figures(double coarser, const ParticleCounts& at, int with_threads, const std::optional<MeasuredCosts>& costs) const {
-  const double larger = ratio(fluid(at), fluid(counts_)), walls = ratio(count_of(at, "walls"), count_of(counts_, "walls"));
+RunFigures ForecastBasis::figures(double coarser, const ParticleCounts& at, int with_threads,
+                                  const std::optional<MeasuredCosts>& costs) const {
+  const double larger = ratio(fluid(at), fluid(counts_)),
+               walls = ratio(count_of(at, "walls"), count_of(counts_, "walls"));
   RunFigures r;
   for (const auto& [set, n] : at) r.particles.emplace_back(set, whole(n));
-  // What inlets bring in takes memory at the end, and half of it time on the average: outlets are not known before.
+  // What inlets bring in takes memory at the end, and half of it time on the average: outlets are
+  // not known before.
   const double entering = entering_particles(at_resolution(model_, coarser * model_.resolution));
   r.entering = whole(entering);
   const double at_end = 1 + entering / std::max(1.0, fluid(at)), on_average = 0.5 * (1 + at_end);
   ParticleCounts end = at;
   for (auto& [set, n] : end)
     if (set == "water") n += entering;
-  const double unseen = count_of(counts_, "water") > 0 ? 0 : entering * (model_.dimension == 2 ? entering_bytes_2d : entering_bytes_3d);
-  r.memory_bytes = static_cast<std::uint64_t>(base_ + bytes_at(shares_, counts_, end) + unseen + output_.series_bytes + checkpoint_library +
-                                              std::max(output_.buffer_bytes, output_.checkpoint_bytes) * larger * at_end);
+  const double unseen =
+      count_of(counts_, "water") > 0
+          ? 0
+          : entering * (model_.dimension == 2 ? entering_bytes_2d : entering_bytes_3d);
+  r.memory_bytes = static_cast<std::uint64_t>(
+      base_ + bytes_at(shares_, counts_, end) + unseen + output_.series_bytes + checkpoint_library +
+      std::max(output_.buffer_bytes, output_.checkpoint_bytes) * larger * at_end);
   r.advection_steps = whole(std::ceil(steps_.advection / coarser));
   r.acoustic_steps = whole(std::ceil(steps_.acoustic / coarser));
   if (costs) {
-    const double stepping = costs->step.of({steps_.advection / coarser, steps_.acoustic / coarser}) * threads() / with_threads;
-    r.wall_s = (costs->start + (stepping + output_.observations * costs->observation + output_.frames * costs->frame) * on_average) * larger;
+    const double stepping =
+        costs->step.of({steps_.advection / coarser, steps_.acoustic / coarser}) * threads() /
+        with_threads;
+    r.wall_s = (costs->start + (stepping + output_.observations * costs->observation +
+                                output_.frames * costs->frame) *
+                                   on_average) *
+               larger;
   }
   // The last checkpoint and the one before it.
   const double checkpoints = r.wall_s && *r.wall_s > model_.output.checkpoint_every ? 2 : 1;
-  r.disk_bytes = static_cast<std::uint64_t>(fixed_files + output_.samples_bytes + output_.frames * (output_.frame_heads + (output_.frame_bytes - output_.frame_heads) * larger * on_average + 2 * entry_bytes) +
-                                            output_.walls_bytes * walls + checkpoints * (checkpoint_fixed + output_.checkpoint_bytes * larger * at_end));
+  r.disk_bytes = static_cast<std::uint64_t>(
+      fixed_files + output_.samples_bytes +
+      output_.frames *
+          (output_.frame_heads + (output_.frame_bytes - output_.frame_heads) * larger * on_average +
+           2 * entry_bytes) +
+      output_.walls_bytes * walls +
+      checkpoints * (checkpoint_fixed + output_.checkpoint_bytes * larger * at_end));
   return r;
 }
 
@@ -235,29 +270,37 @@ Forecast ForecastBasis::operator()(const std::optional<MeasuredCosts>& costs) co
   Forecast forecast;
   static_cast<RunFigures&>(forecast) = figures(1, counts_, threads(), costs);
   forecast.threads = threads();
-  const auto memory = static_cast<double>(available_memory()) + static_cast<double>(resident_memory());
+  const auto memory =
+      static_cast<double>(available_memory()) + static_cast<double>(resident_memory());
   const ParticleCounts expected = expected_particles(model_);
   for (const double coarser : ladder) {
     ParticleCounts at = expected_particles(at_resolution(model_, coarser * model_.resolution));
     // What the estimate misses at the deck's own spacing it misses at the others.
     for (auto& [set, n] : at) n *= ratio(count_of(counts_, set), count_of(expected, set));
     const int with_threads = sensible_threads(whole(fluid(at)), 0);
-    LadderRung rung{coarser * model_.resolution, figures(coarser, at, with_threads, costs), with_threads, true};
-    rung.fits = static_cast<double>(rung.figures.memory_bytes) <= memory && largest_of(at) <= largest_set;
+    LadderRung rung{coarser * model_.resolution, figures(coarser, at, with_threads, costs),
+                    with_threads, true};
+    rung.fits =
+        static_cast<double>(rung.figures.memory_bytes) <= memory && largest_of(at) <= largest_set;
     forecast.ladder.push_back(std::move(rung));
   }
   return forecast;
 }
 
 template <int Dim>
-std::optional<MeasuredCosts> measure_costs(World<Dim>& world, Plan<Dim>& plan, const std::vector<Wish>& wishes, double start, double steps) {
+std::optional<MeasuredCosts> measure_costs(World<Dim>& world, Plan<Dim>& plan,
+                                           const std::vector<Wish>& wishes, double start,
+                                           double steps) {
   const double particles = fluid(counts_of(world));
   if (particles > calibrated_particles) {
     CoarseCopy<Dim> copy(world.model(), calibrated_particles / 2);
     auto costs = measure_costs<Dim>(*copy.scene.world, *copy.plan, wishes, 0, steps);
     if (!costs) return costs;
     const double larger = ratio(particles, fluid(counts_of(*copy.scene.world)));
-    return MeasuredCosts{start, {costs->step.advection * larger, costs->step.acoustic * larger}, costs->observation * larger, costs->frame * larger};
+    return MeasuredCosts{start,
+                         {costs->step.advection * larger, costs->step.acoustic * larger},
+                         costs->observation * larger,
+                         costs->frame * larger};
   }
   try {
     MeasuredCosts costs;
@@ -297,7 +340,8 @@ void RunForecast<Dim>::leave(const std::vector<TimeRow>& rows) {
       if (r.name == "frames") costs_.frame = each;
     }
     for (const auto& e : plan_.effects())
-      if (e.info.stage == Stage::observe && e.calls > 0) costs_.observation += e.seconds / static_cast<double>(e.calls);
+      if (e.info.stage == Stage::observe && e.calls > 0)
+        costs_.observation += e.seconds / static_cast<double>(e.calls);
   }
   const auto steps = static_cast<double>(timer_.steps());
   settled_ = steps >= 3 && (timer_.seconds() > 1 || steps > 0.1 * basis_->advection_steps());
@@ -314,10 +358,14 @@ std::optional<Forecast> RunForecast<Dim>::result() const {
   return (*basis_)(costs);
 }
 
-template ForecastBasis::ForecastBasis(World<2>&, const Plan<2>&, const SoundSpeed&, const std::vector<Wish>&, std::uint64_t);
-template ForecastBasis::ForecastBasis(World<3>&, const Plan<3>&, const SoundSpeed&, const std::vector<Wish>&, std::uint64_t);
-template std::optional<MeasuredCosts> measure_costs<2>(World<2>&, Plan<2>&, const std::vector<Wish>&, double, double);
-template std::optional<MeasuredCosts> measure_costs<3>(World<3>&, Plan<3>&, const std::vector<Wish>&, double, double);
+template ForecastBasis::ForecastBasis(World<2>&, const Plan<2>&, const SoundSpeed&,
+                                      const std::vector<Wish>&, std::uint64_t);
+template ForecastBasis::ForecastBasis(World<3>&, const Plan<3>&, const SoundSpeed&,
+                                      const std::vector<Wish>&, std::uint64_t);
+template std::optional<MeasuredCosts> measure_costs<2>(World<2>&, Plan<2>&,
+                                                       const std::vector<Wish>&, double, double);
+template std::optional<MeasuredCosts> measure_costs<3>(World<3>&, Plan<3>&,
+                                                       const std::vector<Wish>&, double, double);
 template class RunForecast<2>;
 template class RunForecast<3>;
 

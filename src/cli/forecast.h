@@ -1,6 +1,6 @@
 #pragma once
-// The forecast of a deck, put together for `check` and for `run`, and the refusal of a scene that the
-// machine has no memory for.
+// The forecast of a deck, put together for `check` and for `run`, and the refusal of a scene that
+// the machine has no memory for.
 
 #include <optional>
 
@@ -11,30 +11,33 @@
 
 namespace sphgeo {
 
-/// Throws DeckError when the scene needs more memory than there is, before any particle is placed: with
-/// what is needed, what is available and which resolution would fit.
+/// Throws DeckError when the scene needs more memory than there is, before any particle is placed:
+/// with what is needed, what is available and which resolution would fit.
 void refuse_too_large(const Model& model);
 
 /// Measured costs that the forecast of the time rests on, s.
 struct MeasuredCosts {
-  double start = 0;        ///< from the start of the program to the first step
+  double start = 0;  ///< from the start of the program to the first step
   StepCost step;
   double observation = 0;  ///< of probes and the effects that serve them, each time
   double frame = 0;
 };
 
-/// What the forecast is made of, taken from a world as it is after a rearrangement. The world is left as
-/// it was. `base` is the memory of the process before it had any particles, bytes: program, libraries, deck.
+/// What the forecast is made of, taken from a world as it is after a rearrangement. The world is
+/// left as it was. `base` is the memory of the process before it had any particles, bytes: program,
+/// libraries, deck.
 struct ForecastBasis {
   template <int Dim>
-  ForecastBasis(World<Dim>& world, const Plan<Dim>& plan, const SoundSpeed& sound, const std::vector<Wish>& wishes, std::uint64_t base);
+  ForecastBasis(World<Dim>& world, const Plan<Dim>& plan, const SoundSpeed& sound,
+                const std::vector<Wish>& wishes, std::uint64_t base);
 
   /// The forecast for the threads in use; without the time when no costs are given.
   Forecast operator()(const std::optional<MeasuredCosts>& costs) const;
   double advection_steps() const { return steps_.advection; }
 
  private:
-  RunFigures figures(double coarser, const ParticleCounts& at, int with_threads, const std::optional<MeasuredCosts>& costs) const;
+  RunFigures figures(double coarser, const ParticleCounts& at, int with_threads,
+                     const std::optional<MeasuredCosts>& costs) const;
 
   const Model& model_;
   ParticleCounts counts_;
@@ -44,21 +47,28 @@ struct ForecastBasis {
   RunOutput output_;
 };
 
-/// Costs from a few real steps, probes and frames that are not kept: about a second, or as long as a run of
-/// `steps` advection steps. Moves the world on, or a coarser copy of it when a step would take too long.
-/// None when the scene does not survive them.
+/// Costs from a few real steps, probes and frames that are not kept: about a second, or as long as
+/// a run of `steps` advection steps. Moves the world on, or a coarser copy of it when a step would
+/// take too long. None when the scene does not survive them.
 template <int Dim>
-std::optional<MeasuredCosts> measure_costs(World<Dim>& world, Plan<Dim>& plan, const std::vector<Wish>& wishes, double start, double steps);
+std::optional<MeasuredCosts> measure_costs(World<Dim>& world, Plan<Dim>& plan,
+                                           const std::vector<Wish>& wishes, double start,
+                                           double steps);
 
-/// The forecast that a run makes: all but the time before its first step, the time from its own first
-/// steps. It watches, costs next to nothing and changes nothing.
+/// The forecast that a run makes: all but the time before its first step, the time from its own
+/// first steps. It watches, costs next to nothing and changes nothing.
 template <int Dim>
 class RunForecast {
  public:
   /// `base` as in ForecastBasis.
-  RunForecast(World<Dim>& world, const Plan<Dim>& plan, const Stepper<Dim>& stepper, SoundSpeed sound, std::vector<Wish> wishes,
-              std::uint64_t base)
-      : world_(world), plan_(plan), sound_(std::move(sound)), wishes_(std::move(wishes)), base_(base), timer_(world, plan, stepper) {}
+  RunForecast(World<Dim>& world, const Plan<Dim>& plan, const Stepper<Dim>& stepper,
+              SoundSpeed sound, std::vector<Wish> wishes, std::uint64_t base)
+      : world_(world),
+        plan_(plan),
+        sound_(std::move(sound)),
+        wishes_(std::move(wishes)),
+        base_(base),
+        timer_(world, plan, stepper) {}
 
   /// At the beginning of every safe point; `wall` is the time since the start of the program, s.
   void arrive(double wall);

@@ -40,7 +40,7 @@ class Keeper {
   RunParts<Dim> parts_;
   const RunFolder& folder_;
   double wall_before_;
-  double written_at_ = 0;     ///< wall time of this process, s
+  double written_at_ = 0;  ///< wall time of this process, s
   double last_seconds_ = 0, seconds_ = 0;
   long count_ = 0;
   std::uint64_t bytes_ = 0;

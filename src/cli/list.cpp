@@ -19,9 +19,11 @@ std::string lead(const KeyFacts& k) {
 void print_entry(const CatalogGroup& group, const CatalogEntry& entry) {
   std::cout << fmt::format("{} ({}): {}\n", entry.name, group.kind, entry.sentence);
   for (const KeyFacts& k : entry.keys)
-    std::cout << fmt::format("  {}\n      {}{}\n      {}; {}{}\n", k.name, k.sentence, k.equation.empty() ? "" : " (" + k.equation + ")", k.accepts, lead(k),
-               k.changeable ? "; may change on resume" : "");
-  for (const auto& [what, value] : entry.facts) std::cout << fmt::format("  {:<10} {}\n", what, value);
+    std::cout << fmt::format("  {}\n      {}{}\n      {}; {}{}\n", k.name, k.sentence,
+                             k.equation.empty() ? "" : " (" + k.equation + ")", k.accepts, lead(k),
+                             k.changeable ? "; may change on resume" : "");
+  for (const auto& [what, value] : entry.facts)
+    std::cout << fmt::format("  {:<10} {}\n", what, value);
 }
 
 /// Text in a cell of a Markdown table.
@@ -35,8 +37,10 @@ void print_keys(const CatalogEntry& entry) {
   std::cout << fmt::format("| key | accepts | default | what it means |\n|---|---|---|---|\n");
   for (const KeyFacts& k : entry.keys)
     std::cout << fmt::format("| `{}` | {} | {} | {}{} |\n", k.name, cell(k.accepts),
-               k.required ? "required" : k.otherwise.empty() ? "" : "`" + cell(k.otherwise) + "`", cell(k.sentence),
-               k.equation.empty() ? "" : " (" + k.equation + ")");
+                             k.required            ? "required"
+                             : k.otherwise.empty() ? ""
+                                                   : "`" + cell(k.otherwise) + "`",
+                             cell(k.sentence), k.equation.empty() ? "" : " (" + k.equation + ")");
   std::cout << fmt::format("\n");
 }
 
@@ -62,7 +66,8 @@ int list_command() {
   const char* between = "";
   for (const CatalogGroup& group : catalog()) {
     std::cout << fmt::format("{}{}:\n", between, group.heading);
-    for (const CatalogEntry& entry : group.entries) std::cout << fmt::format("  {:<24} {}\n", entry.name, entry.sentence);
+    for (const CatalogEntry& entry : group.entries)
+      std::cout << fmt::format("  {:<24} {}\n", entry.name, entry.sentence);
     between = "\n";
   }
   return 0;
@@ -81,19 +86,25 @@ int show_command(const std::string& name) {
     }
   if (*between != '\0') return 0;
   const std::string near = nearest_name(name, names);
-  throw Error(ExitCode::usage, near.empty() ? fmt::format("there is no type '{}'; 'sphgeo list' prints them all", name)
-                                            : fmt::format("there is no type '{}'; did you mean '{}'?", name, near));
+  throw Error(ExitCode::usage,
+              near.empty()
+                  ? fmt::format("there is no type '{}'; 'sphgeo list' prints them all", name)
+                  : fmt::format("there is no type '{}'; did you mean '{}'?", name, near));
 }
 
 int reference_command() {
   std::cout << fmt::format(
       "# Reference\n\n"
-      "All keys of a deck, all types, effects and fields. Printed by `sphgeo reference` from the declarations that the\n"
+      "All keys of a deck, all types, effects and fields. Printed by `sphgeo reference` from the "
+      "declarations that the\n"
       "reader of decks uses; `sphgeo show NAME` prints one of them.\n\n"
-      "Numbers are in SI units; a number with a unit, such as `18 kPa` or `30 deg`, is accepted where the dimension\n"
-      "fits, and so are formulas of the deck's `variables`. `auto` stands for what the key's sentence says.\n");
+      "Numbers are in SI units; a number with a unit, such as `18 kPa` or `30 deg`, is accepted "
+      "where the dimension\n"
+      "fits, and so are formulas of the deck's `variables`. `auto` stands for what the key's "
+      "sentence says.\n");
   for (const CatalogGroup& group : catalog()) {
-    std::cout << fmt::format("\n## {}{}\n\n{}\n\n", static_cast<char>(group.heading[0] - 'a' + 'A'), group.heading.substr(1), group.sentence);
+    std::cout << fmt::format("\n## {}{}\n\n{}\n\n", static_cast<char>(group.heading[0] - 'a' + 'A'),
+                             group.heading.substr(1), group.sentence);
     if (group.entries.empty()) continue;
     if (group.entries.front().keys.empty()) {
       print_facts(group);

@@ -22,8 +22,11 @@ struct NamedColor {
 };
 
 /// Walls and probes come first, then water and soil, then what solids alternate between.
-constexpr NamedColor colors[] = {{"grey", {0.50, 0.52, 0.55, 1}}, {"red", {0.84, 0.10, 0.13, 1}}, {"blue", {0.36, 0.62, 0.86, 1}}, {"ochre", {0.80, 0.64, 0.36, 1}},
-                                 {"violet", {0.55, 0.42, 0.72, 1}}, {"green", {0.40, 0.66, 0.45, 1}}, {"pink", {0.86, 0.52, 0.66, 1}}, {"brown", {0.55, 0.42, 0.34, 1}}};
+constexpr NamedColor colors[] = {
+    {"grey", {0.50, 0.52, 0.55, 1}},   {"red", {0.84, 0.10, 0.13, 1}},
+    {"blue", {0.36, 0.62, 0.86, 1}},   {"ochre", {0.80, 0.64, 0.36, 1}},
+    {"violet", {0.55, 0.42, 0.72, 1}}, {"green", {0.40, 0.66, 0.45, 1}},
+    {"pink", {0.86, 0.52, 0.66, 1}},   {"brown", {0.55, 0.42, 0.34, 1}}};
 constexpr int wall = 0, probe = 1, water = 2, soil = 3, solid = 4, solids = 4;
 
 constexpr int most_width = 1400, most_height = 1000;  // pixels
@@ -60,20 +63,26 @@ std::string write_preview(const World<Dim>& world, const std::string& path) {
   const std::vector<Vec3> probes = probe_places<Dim>(model);
   for (const Vec3& p : probes) surroundings.extend(p);
   Aabb box = picture_box(particles, surroundings, reach);
-  if (box.empty()) box = {Vec3::Constant(-model.resolution), Vec3::Constant(model.resolution)};  // only material points, say
+  if (box.empty())
+    box = {Vec3::Constant(-model.resolution),
+           Vec3::Constant(model.resolution)};  // only material points, say
 
   std::vector<Color> palette;
   for (const NamedColor& c : colors) palette.push_back(c.color);
   const View view = view_of(box, Dim, most_width, most_height);
   Painter painter(view, palette);
   std::string legend;
-  const auto name = [&](const std::string& what, int color) { legend += (legend.empty() ? "" : ", ") + what + " " + colors[color].name; };
+  const auto name = [&](const std::string& what, int color) {
+    legend += (legend.empty() ? "" : ", ") + what + " " + colors[color].name;
+  };
   const auto draw_walls = [&] {
     for (const auto& [a, b] : outline(walls.points, Dim, walls.corners))
-      painter.line(walls.points[static_cast<std::size_t>(a)], walls.points[static_cast<std::size_t>(b)], 2, wall);
+      painter.line(walls.points[static_cast<std::size_t>(a)],
+                   walls.points[static_cast<std::size_t>(b)], 2, wall);
   };
   if (Dim == 3) draw_walls();
-  for (const std::string_view kind : {"water", "soil", "solid"})  // soil above the water in its pores
+  for (const std::string_view kind :
+       {"water", "soil", "solid"})  // soil above the water in its pores
     for (const auto& set : world.sets()) {
       const std::vector<Vec3>& at = places[set->name()];
       if (set->phase() != kind || at.empty()) continue;
@@ -81,10 +90,13 @@ std::string write_preview(const World<Dim>& world, const std::string& path) {
       std::vector<std::uint8_t> tints(at.size(), static_cast<std::uint8_t>(color));
       if (color == solid && set->has(fields::part)) {
         const auto& part = set->tag(fields::part);
-        for (std::size_t i = 0; i < at.size(); ++i) tints[i] = static_cast<std::uint8_t>(solid + std::abs(part[static_cast<Index>(i)]) % solids);
+        for (std::size_t i = 0; i < at.size(); ++i)
+          tints[i] =
+              static_cast<std::uint8_t>(solid + std::abs(part[static_cast<Index>(i)]) % solids);
       }
       const double spacing = at.size() > 1 ? typical_spacing(at) : model.resolution;
-      painter.discs(at, disc_cover(view, spacing) * spacing, tints, color == water ? 0 : 0.3 * spacing);
+      painter.discs(at, disc_cover(view, spacing) * spacing, tints,
+                    color == water ? 0 : 0.3 * spacing);
       name(set->name(), tints.front());
     }
   if (Dim == 2) draw_walls();

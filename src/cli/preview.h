@@ -7,8 +7,9 @@
 
 namespace sphgeo {
 
-/// Writes a PNG: particles in the colours of their sets (bodies of solids alternate), outlines of the boundaries, and
-/// rings where probes are. Returns what the colours mean, as a line of text. Throws IoError.
+/// Writes a PNG: particles in the colours of their sets (bodies of solids alternate), outlines of
+/// the boundaries, and rings where probes are. Returns what the colours mean, as a line of text.
+/// Throws IoError.
 template <int Dim>
 std::string write_preview(const World<Dim>& world, const std::string& path);
 

@@ -8,8 +8,9 @@
 #include <cmath>
 
 #include "cli/boundary_mesh.h"
+#include "cli/set_frame.h"
+#include "cli/wishes.h"
 #include "core/parallel.h"
-#include "output/vtu.h"
 #include "probes/set_sums.h"
 #include "probes/solid_scene.h"
 #include "scene/build.h"
@@ -22,40 +23,30 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// What a frame of a set shows when the deck names no fields; `mixed`: water and soil meet.
-std::vector<std::string> usual_fields(const std::string& set, bool mixed) {
-  if (set.starts_with("solids")) return {"velocity", "cauchy_stress", "von_mises", "part"};
-  if (set != "water" && set != "soil") return {"velocity", "normal", "part"};
-  std::vector<std::string> names{"velocity", "pressure", "density", "surface", "part"};
-  if (set == "soil") names = {"velocity", "stress", "pressure", "plastic_strain", "volume_fraction", "part"};
-  if (mixed && set == "water") names.insert(names.end(), {"volume", "water_fraction"});
-  if (mixed && set == "soil") names.push_back("pore_pressure");
-  return names;
-}
-
 // How far a CSV file had come at a checkpoint.
 std::uint64_t bytes_at(const StateSource& source, const std::string& series) {
   return static_cast<std::uint64_t>(source.count(series + "/bytes"));
 }
 
 std::vector<Column> run_columns(bool soil) {
-  std::vector<Column> columns{{"advection_steps", "1", "advection steps so far"},
-          {"acoustic_steps", "1", "acoustic steps so far"},
-          {"dt_advection", "s", "last advection step"},
-          {"dt_acoustic", "s", "last acoustic step"},
-          {"particles", "1", "particles that are no walls"},
-          {"lost", "1", "particles that left the domain so far"},
-          {"max_speed", "m/s", "largest speed"},
-          {"min_density", "kg/m3", "smallest density of the water"},
-          {"max_density", "kg/m3", "largest density of the water"},
-          {"mass", "kg", "mass of all that moves (per metre of depth in 2D)"},
-          {"momentum_x", "kg m/s", "momentum of all that moves"},
-          {"momentum_y", "kg m/s", "momentum of all that moves"},
-          {"momentum_z", "kg m/s", "momentum of all that moves"},
-          {"kinetic", "J", "kinetic energy"},
-          {"potential", "J", "potential energy"},
-          {"internal", "J", "energy of compression of water, elastic energy of soil and solids"},
-          {"wall_seconds", "s", "wall time since the start"}};
+  std::vector<Column> columns{
+      {"advection_steps", "1", "advection steps so far"},
+      {"acoustic_steps", "1", "acoustic steps so far"},
+      {"dt_advection", "s", "last advection step"},
+      {"dt_acoustic", "s", "last acoustic step"},
+      {"particles", "1", "particles that are no walls"},
+      {"lost", "1", "particles that left the domain so far"},
+      {"max_speed", "m/s", "largest speed"},
+      {"min_density", "kg/m3", "smallest density of the water"},
+      {"max_density", "kg/m3", "largest density of the water"},
+      {"mass", "kg", "mass of all that moves (per metre of depth in 2D)"},
+      {"momentum_x", "kg m/s", "momentum of all that moves"},
+      {"momentum_y", "kg m/s", "momentum of all that moves"},
+      {"momentum_z", "kg m/s", "momentum of all that moves"},
+      {"kinetic", "J", "kinetic energy"},
+      {"potential", "J", "potential energy"},
+      {"internal", "J", "energy of compression of water, elastic energy of soil and solids"},
+      {"wall_seconds", "s", "wall time since the start"}};
   if (soil) {
     columns.push_back({"dissipated", "J", "energy dissipated by plastic flow of the soil"});
     columns.push_back({"min_volume_fraction", "1", "smallest volume fraction of the soil"});
@@ -66,39 +57,26 @@ std::vector<Column> run_columns(bool soil) {
 
 }  // namespace
 
-void Schedule::done(double time) {
-  next_ = (std::floor(time / interval_ + 1e-9) + 1) * interval_;
-}
-
-std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& sets) {
-  const auto present = [&](const std::string& s) { return std::find(sets.begin(), sets.end(), s) != sets.end(); };
-  std::vector<Wish> wishes;
-  for (const auto& p : model.probes)
-    for (const FieldRequest& r : dynamic_cast<const Probe&>(*p).needs(model))
-      if (present(r.set)) wishes.push_back({r.set, r.field->name, "probe " + p->name});
-  for (const std::string& set : sets)
-    if (set != "walls" && set != "skin")
-      for (const auto& asked = model.output.frames.fields;
-           const std::string& f : asked.empty() ? usual_fields(set, present("water") && present("soil")) : asked)
-        wishes.push_back({set, f, "frames", true});  // a set without that field shows the others
-  if (present("water")) wishes.push_back({"water", "pressure", "run.csv"});
-  if (present("soil")) wishes.push_back({"soil", "volume", "run.csv"});
-  for (const std::string& set : sets)
-    if (set.starts_with("solids")) wishes.push_back({set, "strain_energy", "run.csv", true});  // none of rigid ones
-  return wishes;
-}
+void Schedule::done(double time) { next_ = (std::floor(time / interval_ + 1e-9) + 1) * interval_; }
 
 template <int Dim>
-Recorder<Dim>::Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder, const StateSource* resume)
-    : world_(world), plan_(plan), folder_(folder), frames_(world.model().frame_interval()),
-      rows_(world.model().run_interval()), run_("run", run_columns(world.find("soil") != nullptr)) {
+Recorder<Dim>::Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder,
+                        const StateSource* resume)
+    : world_(world),
+      plan_(plan),
+      folder_(folder),
+      frames_(world.model().frame_interval()),
+      rows_(world.model().run_interval()),
+      run_("run", run_columns(world.find("soil") != nullptr)) {
   const Model& model = world.model();
   if (resume) run_.resume(folder.run_csv(), bytes_at(*resume, "output/run"));
   else run_.write_to(folder.run_csv());
   for (const auto& spec : model.probes) {
     auto probe = std::dynamic_pointer_cast<const Probe>(spec);
     auto series = std::make_unique<Series>(spec->name, probe->columns(model));
-    if (resume) series->resume(folder.probe_csv(spec->name), bytes_at(*resume, "output/probes/" + spec->name));
+    if (resume)
+      series->resume(folder.probe_csv(spec->name),
+                     bytes_at(*resume, "output/probes/" + spec->name));
     else series->write_to(folder.probe_csv(spec->name));
     probes_.push_back({std::move(probe), Schedule(model.probe_interval(*spec)), std::move(series)});
   }
@@ -138,13 +116,15 @@ void Recorder<Dim>::save(StateSink& sink) {
   sink.put("output/calls", calls);
   // The ledger compares with the first row, which may be long ago.
   for (const auto& [name, totals] : {std::pair{"first", &first_}, std::pair{"latest", &latest_}})
-    if (*totals) sink.put(std::string("output/ledger/") + name, std::bit_cast<TotalsArray>(**totals));
+    if (*totals)
+      sink.put(std::string("output/ledger/") + name, std::bit_cast<TotalsArray>(**totals));
 }
 
 template <int Dim>
 void Recorder<Dim>::load(const StateSource& source) {
   rows_.set_next(source.number("output/run/next"));
-  for (ProbeRun& p : probes_) p.schedule.set_next(source.number("output/probes/" + p.series->name() + "/next"));
+  for (ProbeRun& p : probes_)
+    p.schedule.set_next(source.number("output/probes/" + p.series->name() + "/next"));
   frame_ = source.count("output/frames/count");
   frames_.set_next(source.number("output/frames/next"));
   last_frame_time_ = source.number("output/frames/last_time");
@@ -205,9 +185,12 @@ void Recorder<Dim>::add_set_totals(const ParticleSet<Dim>& set, const Energies& 
   sum.potential += e.potential;
   sum.internal += e.internal;
   sum.mass += ordered_sum(n, [&](Index i) { return m[i]; });
-  const Vec3 momentum = to_space<Dim>(ordered_sum(n, [&](Index i) -> Vec<Dim> { return m[i] * v[i]; }));
+  const Vec3 momentum =
+      to_space<Dim>(ordered_sum(n, [&](Index i) -> Vec<Dim> { return m[i] * v[i]; }));
   for (std::size_t k = 0; k < 3; ++k) sum.momentum[k] += momentum[static_cast<Index>(k)];
-  sum.max_speed = std::max(sum.max_speed, std::sqrt(block_max(n, [&](Index i) { return v[i].squaredNorm(); }, 0.0)));
+  sum.max_speed =
+      std::max(sum.max_speed, std::sqrt(block_max(
+                                  n, [&](Index i) { return v[i].squaredNorm(); }, 0.0)));
 }
 
 template <int Dim>
@@ -234,7 +217,8 @@ typename Recorder<Dim>::Totals Recorder<Dim>::totals() const {
   const ParticleSet<Dim>* water = world_.find("water");
   if (const ParticleSet<Dim>* soil = world_.find("soil")) add_soil_totals(*soil, sum);
   for (const auto& set : world_.sets())
-    if (set->phase() == "solid") add_set_totals(*set, solid_energies(WorldView<Dim>(world_), set->name()), sum);
+    if (set->phase() == "solid")
+      add_set_totals(*set, solid_energies(WorldView<Dim>(world_), set->name()), sum);
   sum.internal += contact_energy(WorldView<Dim>(world_));
   if (!water) return sum;
   const auto& m = water->scalar(fields::mass);
@@ -247,7 +231,8 @@ typename Recorder<Dim>::Totals Recorder<Dim>::totals() const {
   const auto& fraction = water->scalar(fields::water_fraction);
   const bool follows = world_.model().numerics.pore_water != "constant_volume";
   sum.water_volume = ordered_sum(n, [&](Index i) { return m[i] / rho[i]; });
-  sum.mixture_volume = ordered_sum(n, [&](Index i) { return m[i] / (rho[i] * (follows ? fraction[i] : 1.0)); });
+  sum.mixture_volume =
+      ordered_sum(n, [&](Index i) { return m[i] / (rho[i] * (follows ? fraction[i] : 1.0)); });
   return sum;
 }
 
@@ -261,11 +246,26 @@ void Recorder<Dim>::sample_run(double wall_seconds) {
     if (set->phase() != "wall") particles += set->size();
   for (const auto& [name, count] : world_.lost()) lost += count;
   const Clock& c = world_.clock;
-  const double row[] = {static_cast<double>(c.advection_steps), static_cast<double>(c.acoustic_steps),
-                        c.dt_advection, c.dt_acoustic, static_cast<double>(particles), static_cast<double>(lost),
-                        t.max_speed, t.min_density, t.max_density, t.mass, t.momentum[0], t.momentum[1],
-                        t.momentum[2], t.kinetic, t.potential, t.internal, wall_seconds,
-                        t.dissipated, t.min_fraction, t.max_fraction};
+  const double row[] = {static_cast<double>(c.advection_steps),
+                        static_cast<double>(c.acoustic_steps),
+                        c.dt_advection,
+                        c.dt_acoustic,
+                        static_cast<double>(particles),
+                        static_cast<double>(lost),
+                        t.max_speed,
+                        t.min_density,
+                        t.max_density,
+                        t.mass,
+                        t.momentum[0],
+                        t.momentum[1],
+                        t.momentum[2],
+                        t.kinetic,
+                        t.potential,
+                        t.internal,
+                        wall_seconds,
+                        t.dissipated,
+                        t.min_fraction,
+                        t.max_fraction};
   run_.add(c.time, std::span<const double>(row).first(run_.columns().size()));
 }
 
@@ -284,59 +284,29 @@ void Recorder<Dim>::write_frame() {
 template <int Dim>
 std::vector<std::string> Recorder<Dim>::frame_fields(const ParticleSet<Dim>& set) const {
   const auto& asked = world_.model().output.frames.fields;
-  std::vector<std::string> names = asked.empty() ? usual_fields(set.name(), world_.find("water") && world_.find("soil")) : asked;
+  std::vector<std::string> names =
+      asked.empty() ? usual_fields(set.name(), world_.find("water") && world_.find("soil")) : asked;
   std::erase_if(names, [&](const std::string& f) { return !set.fields().contains(f); });
   return names;
 }
 
 template <int Dim>
 void Recorder<Dim>::write_set(const ParticleSet<Dim>& set) {
-  const auto& x = set.vector(fields::position);
-  std::vector<VtuField> columns;
-  std::vector<std::vector<double>> vectors;  // three components each, kept until the file is written
-  vectors.reserve(set.fields().size());
-  const Id* ids = set.ids().data();
-  const auto n = static_cast<std::size_t>(set.size());
-  columns.push_back({"id", "", 1, std::span<const std::uint64_t>(ids, n)});
-  for (const std::string& name : frame_fields(set)) {
-    const auto it = set.fields().find(name);
-    if (it == set.fields().end() || name == "id" || name == "position") continue;
-    const FieldSpec& spec = it->second->spec();
-    if (spec.type == FieldType::scalar)
-      columns.push_back({name, spec.unit.symbol, 1, std::span<const double>(set.scalar(spec).data(), n)});
-    else if (spec.type == FieldType::tag)
-      columns.push_back({name, "", 1, std::span<const std::int32_t>(set.tag(spec).data(), n)});
-    else if (spec.type == FieldType::tensor)
-      columns.push_back({name, spec.unit.symbol, 6, std::span<const double>(set.tensor(spec).data()->data(), 6 * n)});
-    else if (spec.type == FieldType::vector) {
-      auto& flat = vectors.emplace_back();
-      flat.reserve(3 * n);
-      const auto& values = set.vector(spec);
-      for (Index i = 0; i < set.size(); ++i) {
-        const Vec3 v = to_space<Dim>(values[i]);
-        flat.insert(flat.end(), v.data(), v.data() + 3);
-      }
-      columns.push_back({name, spec.unit.symbol, 3, std::span<const double>(flat)});
-    }
-  }
   VtuOptions options;
   options.time = world_.clock.time;
-  options.precision = world_.model().output.frames.precision == "float64" ? VtuPrecision::float64 : VtuPrecision::float32;
-  write_vtu(folder_.frame(set.name(), frame_), VtuPoints(set.size(), [&](Index i) { return to_space<Dim>(x[i]); }), columns, options);
+  options.precision = world_.model().output.frames.precision == "float64" ? VtuPrecision::float64
+                                                                          : VtuPrecision::float32;
+  write_set_frame(folder_.frame(set.name(), frame_), set, frame_fields(set), options);
   pvd_.at(set.name()).add(world_.clock.time, RunFolder::frame_name(set.name(), frame_));
 }
 
 template <int Dim>
 void Recorder<Dim>::write_boundaries() {
   const Model& model = world_.model();
-  const Index number = boundaries_move(model) ? frame_ : 0;  // walls at rest are written once and listed at every time
-  if (number == frame_) {
-    const BoundaryMesh mesh = boundary_mesh(model, world_.clock.time);
-    VtuOptions options;
-    options.time = world_.clock.time;
-    write_vtu_mesh(folder_.frame("boundaries", number), mesh.points, Dim, mesh.corners, {},
-                   {{"part", "", 1, std::span<const std::int32_t>(mesh.part)}}, options);
-  }
+  // Walls at rest are written once and listed at every time.
+  const Index number = boundaries_move(model) ? frame_ : 0;
+  if (number == frame_)
+    write_boundary_frame(folder_.frame("boundaries", number), model, world_.clock.time);
   pvd_.at("boundaries").add(world_.clock.time, RunFolder::frame_name("boundaries", number));
 }
 
@@ -350,7 +320,8 @@ const Series* Recorder<Dim>::series(const std::string& probe) const {
 
 template <int Dim>
 std::vector<TimeRow> Recorder<Dim>::time_rows() const {
-  return {{"probes", calls_probes_, seconds_probes_, 0}, {"frames", calls_frames_, seconds_frames_, 0}};
+  return {{"probes", calls_probes_, seconds_probes_, 0},
+          {"frames", calls_frames_, seconds_frames_, 0}};
 }
 
 template <int Dim>
@@ -358,16 +329,38 @@ std::vector<LedgerRow> Recorder<Dim>::ledger() const {
   if (!first_ || !latest_) return {};
   const Totals &a = *first_, &b = *latest_;
   const double speed = std::max({a.max_speed, b.max_speed, 1e-300});
-  const auto relative = [](double difference, double scale) { return scale > 0 ? std::abs(difference) / scale : 0.0; };
-  const double energy_a = a.kinetic + a.potential + a.internal, energy_b = b.kinetic + b.potential + b.internal;
+  const auto relative = [](double difference, double scale) {
+    return scale > 0 ? std::abs(difference) / scale : 0.0;
+  };
+  const double energy_a = a.kinetic + a.potential + a.internal,
+               energy_b = b.kinetic + b.potential + b.internal;
   const double energy_scale = std::max({std::abs(energy_a), a.kinetic, b.kinetic});
   const auto vec = [](const std::array<double, 3>& v) { return Vec3(v[0], v[1], v[2]); };
-  const auto list = [](const std::array<double, 3>& v) { return std::vector<double>(v.begin(), v.end()); };
+  const auto list = [](const std::array<double, 3>& v) {
+    return std::vector<double>(v.begin(), v.end());
+  };
   const double mass_in = b.mass_in - a.mass_in, energy_in = b.energy_in - a.energy_in;
   const Vec3 momentum_in = vec(b.momentum_in) - vec(a.momentum_in);
-  std::vector<LedgerRow> rows{{"mass", "kg", {a.mass}, {b.mass}, {}, relative(b.mass - a.mass - mass_in, std::max(a.mass, b.mass))},
-          {"momentum", "kg m/s", list(a.momentum), list(b.momentum), {}, relative((vec(b.momentum) - vec(a.momentum) - momentum_in).norm(), std::max(a.mass, b.mass) * speed)},
-          {"energy", "J", {energy_a}, {energy_b}, {}, relative(energy_b - energy_a - energy_in, std::max(energy_scale, std::abs(energy_in)))}};
+  std::vector<LedgerRow> rows{
+      {"mass",
+       "kg",
+       {a.mass},
+       {b.mass},
+       {},
+       relative(b.mass - a.mass - mass_in, std::max(a.mass, b.mass))},
+      {"momentum",
+       "kg m/s",
+       list(a.momentum),
+       list(b.momentum),
+       {},
+       relative((vec(b.momentum) - vec(a.momentum) - momentum_in).norm(),
+                std::max(a.mass, b.mass) * speed)},
+      {"energy",
+       "J",
+       {energy_a},
+       {energy_b},
+       {},
+       relative(energy_b - energy_a - energy_in, std::max(energy_scale, std::abs(energy_in)))}};
   if (!world_.exchanged().empty()) {
     rows[0].exchanged = {mass_in};
     rows[1].exchanged = {momentum_in.x(), momentum_in.y(), momentum_in.z()};
@@ -375,13 +368,29 @@ std::vector<LedgerRow> Recorder<Dim>::ledger() const {
   }
   if (a.water_volume > 0) {
     const std::string cubic = Dim == 2 ? "m2" : "m3";
-    rows.push_back({"water_volume", cubic, {a.water_volume}, {b.water_volume}, {}, relative(b.water_volume - a.water_volume, a.water_volume)});
-    rows.push_back({"mixture_volume", cubic, {a.mixture_volume}, {b.mixture_volume}, {}, relative(b.mixture_volume - a.mixture_volume, a.mixture_volume)});
+    rows.push_back({"water_volume",
+                    cubic,
+                    {a.water_volume},
+                    {b.water_volume},
+                    {},
+                    relative(b.water_volume - a.water_volume, a.water_volume)});
+    rows.push_back({"mixture_volume",
+                    cubic,
+                    {a.mixture_volume},
+                    {b.mixture_volume},
+                    {},
+                    relative(b.mixture_volume - a.mixture_volume, a.mixture_volume)});
   }
   std::vector<Tally> tallies;
   for (const auto& e : plan_.effects()) e.effect->tally(tallies);
   for (const Tally& t : tallies) rows.push_back({t.name, t.unit, {}, {t.value}, {}, 0.0});
-  if (world_.find("soil")) rows.push_back({"dissipated", "J", {a.dissipated}, {b.dissipated}, {}, relative(b.dissipated - a.dissipated, energy_scale)});
+  if (world_.find("soil"))
+    rows.push_back({"dissipated",
+                    "J",
+                    {a.dissipated},
+                    {b.dissipated},
+                    {},
+                    relative(b.dissipated - a.dissipated, energy_scale)});
   return rows;
 }
 

@@ -18,10 +18,8 @@
 
 namespace sphgeo {
 
-/// Fields that the deck's probes and frames ask for, by who asks.
-std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& sets);
-
-/// Times at which something is due: every multiple of an interval, taken at the first safe point past it.
+/// Times at which something is due: every multiple of an interval, taken at the first safe point
+/// past it.
 class Schedule {
  public:
   explicit Schedule(double interval) : interval_(interval) {}
@@ -39,9 +37,10 @@ class Schedule {
 template <int Dim>
 class Recorder {
  public:
-  /// Opens all files; with `resume` it goes on with those that are there, cut back to the checkpoint.
-  /// Throws IoError.
-  Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder, const StateSource* resume = nullptr);
+  /// Opens all files; with `resume` it goes on with those that are there, cut back to the
+  /// checkpoint. Throws IoError.
+  Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder,
+           const StateSource* resume = nullptr);
 
   /// Brings all rows to the disk, then saves how far each file has come.
   void save(StateSink& sink);
@@ -73,8 +72,9 @@ class Recorder {
     std::array<double, 3> momentum{};
     double max_speed = 0, min_density = 0, max_density = 0;
     double dissipated = 0, min_fraction = 0, max_fraction = 0;  ///< of soil
-    double water_volume = 0, mixture_volume = 0;                ///< sum of m / rho and of V, where water meets soil
-    double mass_in = 0, energy_in = 0;                          ///< what has come in through boundaries, less what has left
+    double water_volume = 0,
+           mixture_volume = 0;          ///< sum of m / rho and of V, where water meets soil
+    double mass_in = 0, energy_in = 0;  ///< what has come in through boundaries, less what has left
     std::array<double, 3> momentum_in{};
   };
   using TotalsArray = std::array<double, sizeof(Totals) / sizeof(double)>;

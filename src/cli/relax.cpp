@@ -34,7 +34,8 @@ void write_frames(const Model& model, const PoreWater& water, const RunFolder& f
   const char* unit = model.dimension == 2 ? "m2" : "m3";
   const WaterTarget target(model);
   PvdFile collection(folder.pvd("water"));
-  const auto write = [&](Index number, double step, const std::vector<Vec3>& at, const std::vector<double>* density) {
+  const auto write = [&](Index number, double step, const std::vector<Vec3>& at,
+                         const std::vector<double>* density) {
     std::vector<double> fraction(at.size()), volume(at.size());
     parallel_for(static_cast<Index>(at.size()), [&](Index i) {
       const auto k = static_cast<std::size_t>(i);
@@ -51,7 +52,8 @@ void write_frames(const Model& model, const PoreWater& water, const RunFolder& f
     collection.add(step, RunFolder::frame_name("water", number));
   };
   write(0, 0, water.start, nullptr);
-  write(1, static_cast<double>(std::max<std::size_t>(water.history.size(), 2) - 1), after, &water.number_density);
+  write(1, static_cast<double>(std::max<std::size_t>(water.history.size(), 2) - 1), after,
+        &water.number_density);
 }
 
 /// The surfaces of the soils, as lines or triangles.
@@ -71,7 +73,8 @@ void write_outlines(const Model& model, const RunFolder& folder) {
     else add(mesh.triangles);
   }
   const std::vector<std::int32_t> part(corners.size() / static_cast<std::size_t>(model.dimension));
-  write_vtu_mesh(folder.frame("soil_surface", 0), points, model.dimension, corners, {}, {{"part", "", 1, std::span<const std::int32_t>(part)}});
+  write_vtu_mesh(folder.frame("soil_surface", 0), points, model.dimension, corners, {},
+                 {{"part", "", 1, std::span<const std::int32_t>(part)}});
   PvdFile(folder.pvd("soil_surface")).add(0, RunFolder::frame_name("soil_surface", 0));
 }
 
@@ -103,16 +106,21 @@ int relax_command(const RelaxOptions& options) {
   Diagnostics found = model.warnings;
   const std::optional<PoreBodies> pores = pore_bodies(model);
   if (!pores)
-    throw Error(ExitCode::usage, options.deck + ": no water of this deck starts in the pores of soil: there is nothing to relax");
+    throw Error(
+        ExitCode::usage,
+        options.deck +
+            ": no water of this deck starts in the pores of soil: there is nothing to relax");
   const FolderLock lock(options.folder);
-  const RunFolder folder(options.folder, options.overwrite ? ExistingResults::overwrite : ExistingResults::refuse);
+  const RunFolder folder(options.folder,
+                         options.overwrite ? ExistingResults::overwrite : ExistingResults::refuse);
   if (options.threads > 0) set_threads(options.threads);
   const std::optional<PoreWater> water = pore_water(model, found, Relaxing::anew);
   if (found.has_errors() || !water) throw DeckError(found);
   if (!found.items().empty()) std::cerr << found.render();
 
   write_file_atomically(folder.resolved_deck(), resolved_yaml(model));
-  StateFileWriter out(relaxed_kind(), static_cast<std::size_t>(water->accepted) * 5 * sizeof(double));
+  StateFileWriter out(relaxed_kind(),
+                      static_cast<std::size_t>(water->accepted) * 5 * sizeof(double));
   put(*water, depends_on(model, *pores), out);
   out.write(folder.relaxed(), "");
   const Series history = relaxation_series(model, *water);
@@ -122,10 +130,13 @@ int relax_command(const RelaxOptions& options) {
 
   Summary summary;
   summary.status = "done";
-  summary.expect = evaluate(relaxation_expects(model, true), [&](const std::string& name) { return name == relaxation_probe ? &history : nullptr; });
+  summary.expect = evaluate(relaxation_expects(model, true), [&](const std::string& name) {
+    return name == relaxation_probe ? &history : nullptr;
+  });
   bool met = true;
   for (const ExpectResult& r : summary.expect) met = met && r.pass;
-  summary.exit_code = static_cast<int>(options.verify && !met ? ExitCode::mismatch : ExitCode::done);
+  summary.exit_code =
+      static_cast<int>(options.verify && !met ? ExitCode::mismatch : ExitCode::done);
   summary.version = version();
   summary.title = model.title;
   summary.deck = options.deck;
@@ -138,7 +149,9 @@ int relax_command(const RelaxOptions& options) {
   summary.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   nlohmann::ordered_json j = to_json(summary);
   j["relaxation"] = report_of(model, *water);
-  write_file_atomically(folder.summary(), j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
+  write_file_atomically(
+      folder.summary(),
+      j.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
   if (!options.quiet) std::cerr << relaxation_line(model, *water) << "\n";
   if (!summary.expect.empty()) std::cout << render_expectations(summary.expect);
   return summary.exit_code;

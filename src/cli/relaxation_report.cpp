@@ -8,13 +8,16 @@ namespace sphgeo {
 namespace {
 
 std::vector<Column> columns() {
-  return {{"density_spread", "", "standard deviation of the number density over its mean, of free particles deeper than their kernel reaches"},
-          {"mass_error", "", "particles too many for the water in pores and clear; negative: too few"},
-          {"density_mean", "", "mean of the same number densities; 1 is the target"},
-          {"density_low", "", "smallest of them"},
-          {"density_high", "", "largest of them"},
-          {"mean_move", "", "mean movement of the step over the target spacing"},
-          {"largest_move", "", "largest movement of the step over the target spacing"}};
+  return {
+      {"density_spread", "",
+       "standard deviation of the number density over its mean, of free particles deeper than "
+       "their kernel reaches"},
+      {"mass_error", "", "particles too many for the water in pores and clear; negative: too few"},
+      {"density_mean", "", "mean of the same number densities; 1 is the target"},
+      {"density_low", "", "smallest of them"},
+      {"density_high", "", "largest of them"},
+      {"mean_move", "", "mean movement of the step over the target spacing"},
+      {"largest_move", "", "largest movement of the step over the target spacing"}};
 }
 
 }  // namespace
@@ -24,7 +27,8 @@ Series relaxation_series(const Model& model, const PoreWater& water) {
   const double error = water.mass_error(std::pow(model.resolution, model.dimension));
   double step = 0;
   for (const RelaxationStep& s : water.history)
-    out.add(step++, std::vector<double>{s.density_spread, error, s.density_mean, s.density_low, s.density_high, s.mean_move, s.largest_move});
+    out.add(step++, std::vector<double>{s.density_spread, error, s.density_mean, s.density_low,
+                                        s.density_high, s.mean_move, s.largest_move});
   if (water.history.empty()) out.add(0, std::vector<double>{0, error, 1, 1, 1, 0, 0});
   return out;
 }
@@ -47,15 +51,18 @@ std::string relaxation_line(const Model& model, const PoreWater& water) {
   if (water.from_file) how = "from " + model.relaxation.file->path;
   else if (water.history.size() < 2) how = "accepted, not moved";
   else
-    how = fmt::format("{} of them moved in {} steps, spread {:.2g} % to {:.2g} %, {:.2g} s", water.moved, water.history.size() - 1,
-                      100 * water.history.front().density_spread, 100 * water.history.back().density_spread, water.seconds);
+    how = fmt::format("{} of them moved in {} steps, spread {:.2g} % to {:.2g} %, {:.2g} s",
+                      water.moved, water.history.size() - 1,
+                      100 * water.history.front().density_spread,
+                      100 * water.history.back().density_spread, water.seconds);
   return fmt::format("water in soil: {} particles, {}", water.accepted, how);
 }
 
 std::vector<Expect> relaxation_expects(const Model& model, bool about_relaxation) {
   std::vector<Expect> out;
   for (const Expect& e : model.expect)
-    if ((e.probe.substr(0, e.probe.find('.')) == relaxation_probe) == about_relaxation) out.push_back(e);
+    if ((e.probe.substr(0, e.probe.find('.')) == relaxation_probe) == about_relaxation)
+      out.push_back(e);
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include "cli/keeper.h"
 #include "cli/recorder.h"
 #include "cli/relaxation_report.h"
+#include "cli/wishes.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/memory.h"
@@ -31,17 +32,21 @@ double seconds_since(clock_type::time_point start) {
 }
 
 ProgressState progress_of(const Model& model, const Clock& c, Index particles, double wall) {
-  return {c.time, model.end_time, c.advection_steps, c.acoustic_steps, c.dt_acoustic, particles, wall};
+  return {c.time, model.end_time, c.advection_steps, c.acoustic_steps, c.dt_acoustic, particles,
+          wall};
 }
 
 /// What --resume finds in the folder: a checkpoint, or nothing to go on from.
 FoundCheckpoint checkpoint_of(const RunOptions& options, const Model& model) {
   if (!options.resume || !holds_results(options.folder)) return {};
   const std::string folder = options.folder;
-  FoundCheckpoint found = find_checkpoint(folder + "/checkpoint.h5", folder + "/checkpoint.prev.h5");
-  for (const std::string& warning : found.warnings) std::cerr << "warning: " << printable(warning) << "\n";
+  FoundCheckpoint found =
+      find_checkpoint(folder + "/checkpoint.h5", folder + "/checkpoint.prev.h5");
+  for (const std::string& warning : found.warnings)
+    std::cerr << "warning: " << printable(warning) << "\n";
   if (!found.reader) {
-    std::cerr << "warning: " << printable(folder) << " holds no checkpoint yet: the run starts at t = 0\n";
+    std::cerr << "warning: " << printable(folder)
+              << " holds no checkpoint yet: the run starts at t = 0\n";
     return {};
   }
   require_same_deck(model, *found.reader);
@@ -53,7 +58,10 @@ template <int Dim>
 class DeckRun {
  public:
   DeckRun(const Model& model, const RunOptions& options, clock_type::time_point start)
-      : model_(model), options_(options), start_(start), progress_(std::cerr, progress_style_of_stderr(options.quiet)) {}
+      : model_(model),
+        options_(options),
+        start_(start),
+        progress_(std::cerr, progress_style_of_stderr(options.quiet)) {}
 
   int operator()() {
     const FolderLock lock(options_.folder);
@@ -66,9 +74,10 @@ class DeckRun {
     for (const auto& set : world.sets()) names.push_back(set->name());
 
     // Without a checkpoint, what a resumed run finds in its folder is of no use to it.
-    const RunFolder folder(options_.folder, resumed                                 ? ExistingResults::resume
-                                            : options_.overwrite || options_.resume ? ExistingResults::overwrite
-                                                                                    : ExistingResults::refuse);
+    const RunFolder folder(options_.folder, resumed ? ExistingResults::resume
+                                            : options_.overwrite || options_.resume
+                                                ? ExistingResults::overwrite
+                                                : ExistingResults::refuse);
     StopRequests requests(folder.stop_file(), options_.limits);
     const std::vector<Wish> wishes = wishes_of(model_, names);
     Plan<Dim> plan(world, wishes);
@@ -82,7 +91,8 @@ class DeckRun {
       wall_before_ = resumed->number("wall_seconds");
       steps_before_ = world.clock.advection_steps;
       acoustic_before_ = world.clock.acoustic_steps;
-      std::cerr << fmt::format("going on from t = {:.6g} s, advection step {} ({})\n", world.clock.time, steps_before_, printable(checkpoint.path));
+      std::cerr << fmt::format("going on from t = {:.6g} s, advection step {} ({})\n",
+                               world.clock.time, steps_before_, printable(checkpoint.path));
     }
     write_file_atomically(folder.resolved_deck(), resolved_yaml(model_));
     Recorder<Dim> recorder(world, plan, folder, resumed);
@@ -105,9 +115,13 @@ class DeckRun {
     double asked_at = seconds_since(start_), longest_wait = 0;  // s
     const auto ask = [&](double wall, std::optional<long> steps) {
       longest_wait = std::max(longest_wait, wall - std::exchange(asked_at, wall));
-      // What ending takes: one more wait, and the checkpoint (an unknown one is guessed to be slow).
-      const double reserve = longest_wait + (keeper.count() > 0 ? keeper.last_seconds() : 1e-7 * static_cast<double>(world.bytes()) / 100);
-      stopped_ = requests.reason(wall, reserve, steps, world.clock.acoustic_steps - acoustic_before_);
+      // What ending takes: one more wait, and the checkpoint (an unknown one is guessed to be
+      // slow).
+      const double reserve =
+          longest_wait + (keeper.count() > 0 ? keeper.last_seconds()
+                                             : 1e-7 * static_cast<double>(world.bytes()) / 100);
+      stopped_ =
+          requests.reason(wall, reserve, steps, world.clock.acoustic_steps - acoustic_before_);
       return !stopped_.empty();
     };
     hooks.before_acoustic_step = [&] {
@@ -118,7 +132,9 @@ class DeckRun {
     };
     hooks.before_rearranging = [&] {
       const double wall = seconds_since(start_);
-      if (ask(wall, world.clock.advection_steps - steps_before_) || world.clock.time >= model_.end_time) keeper.keep(wall);
+      if (ask(wall, world.clock.advection_steps - steps_before_) ||
+          world.clock.time >= model_.end_time)
+        keeper.keep(wall);
       else keeper.keep_if_due(wall);
       return stopped_.empty();
     };
@@ -138,27 +154,32 @@ class DeckRun {
  private:
   Scene<Dim> make_scene(const StateSource* resumed) {
     Diagnostics found = model_.warnings;
-    Scene<Dim> scene = build_scene<Dim>(model_, found, resumed ? Filling::none : Filling::bodies_and_boundaries);
+    Scene<Dim> scene =
+        build_scene<Dim>(model_, found, resumed ? Filling::none : Filling::bodies_and_boundaries);
     if (!resumed) check_scene(scene, found);
     if (found.has_errors()) throw DeckError(found);
     if (!found.items().empty()) std::cerr << found.render();
-    if (scene.pore_water && !options_.quiet) std::cerr << printable(relaxation_line(model_, *scene.pore_water)) << "\n";
+    if (scene.pore_water && !options_.quiet)
+      std::cerr << printable(relaxation_line(model_, *scene.pore_water)) << "\n";
     return scene;
   }
 
-  void finish(const RunParts<Dim>& parts, const Keeper<Dim>& keeper, const RunFolder& folder, const std::optional<UnstableError>& failure) {
+  void finish(const RunParts<Dim>& parts, const Keeper<Dim>& keeper, const RunFolder& folder,
+              const std::optional<UnstableError>& failure) {
     const World<Dim>& world = parts.world;
     parts.recorder.flush();
-    summary_.expect = evaluate(relaxation_expects(model_, false), [&](const std::string& name) { return parts.recorder.series(name); });
+    summary_.expect = evaluate(relaxation_expects(model_, false), [&](const std::string& name) {
+      return parts.recorder.series(name);
+    });
     bool met = true;
     for (const ExpectResult& r : summary_.expect) met = met && r.pass;
     const bool stopped = !failure && !stopped_.empty();
     summary_.status = failure ? "unstable" : stopped ? "stopped" : "done";
     summary_.message = failure ? failure->what() : stopped_;
-    summary_.exit_code = static_cast<int>(failure                     ? ExitCode::unstable
-                                          : stopped                   ? ExitCode::stopped
-                                          : options_.verify && !met   ? ExitCode::mismatch
-                                                                      : ExitCode::done);
+    summary_.exit_code = static_cast<int>(failure                   ? ExitCode::unstable
+                                          : stopped                 ? ExitCode::stopped
+                                          : options_.verify && !met ? ExitCode::mismatch
+                                                                    : ExitCode::done);
     summary_.version = version();
     summary_.title = model_.title;
     summary_.deck = options_.deck;
@@ -180,11 +201,14 @@ class DeckRun {
     rows.push_back({"guard", stepper.guard().calls(), stepper.guard().seconds(), 0});
     rows.push_back({"checkpoints", keeper.count(), keeper.seconds(), 0});
     for (const auto& e : parts.plan.effects()) {
-      rows.push_back({e.label, e.calls, e.seconds, 0, e.walked_set, e.in_set > 0 ? e.walked / e.in_set : 0});
-      summary_.plan.push_back({stage_name(e.info.stage), e.info.name, e.info.equations, e.effect->acts_on(), e.because});
+      rows.push_back(
+          {e.label, e.calls, e.seconds, 0, e.walked_set, e.in_set > 0 ? e.walked / e.in_set : 0});
+      summary_.plan.push_back({stage_name(e.info.stage), e.info.name, e.info.equations,
+                               e.effect->acts_on(), e.because});
       if (e.info.stage != Stage::observe) stepping += e.seconds;
     }
-    summary_.particle_updates_per_s_per_core = stepping > 0 ? stepper.particle_updates() / stepping / threads() : 0;
+    summary_.particle_updates_per_s_per_core =
+        stepping > 0 ? stepper.particle_updates() / stepping / threads() : 0;
     summary_.effects = with_rest(std::move(rows), summary_.wall_s);
     summary_.ledger = parts.recorder.ledger();
     summary_.checkpoint = {keeper.count(), keeper.seconds(), keeper.bytes()};
@@ -206,34 +230,48 @@ class DeckRun {
     if (options_.report) write_page(folder);
   }
 
-  /// The page comes last: whatever goes wrong with it, the results are there, and the page can be made again from them.
+  /// The page comes last: whatever goes wrong with it, the results are there, and the page can be
+  /// made again from them.
   void write_page(const RunFolder& folder) {
     try {
       write_report({options_.folder}, folder.report());
     } catch (const std::exception& e) {
-      std::cerr << "warning: there is no report.html: " << printable(e.what()) << "; 'sphgeo report " << printable(options_.folder) << "' makes it again\n";
-      if (summary_.exit_code == 0 && dynamic_cast<const IoError*>(&e)) summary_.exit_code = static_cast<int>(ExitCode::io);
+      std::cerr << "warning: there is no report.html: " << printable(e.what())
+                << "; 'sphgeo report " << printable(options_.folder) << "' makes it again\n";
+      if (summary_.exit_code == 0 && dynamic_cast<const IoError*>(&e))
+        summary_.exit_code = static_cast<int>(ExitCode::io);
     }
   }
 
   void report(const World<Dim>& world, const RunFolder& folder) const {
     if (!options_.quiet) {
       std::cerr << render_time_table(summary_.effects);
-      std::cerr << fmt::format("{} acoustic steps, {:.3g} million particle updates per second and core on {} thread{}\n",
-                               summary_.acoustic_steps, summary_.particle_updates_per_s_per_core / 1e6, summary_.threads,
-                               summary_.threads == 1 ? "" : "s");
+      std::cerr << fmt::format(
+          "{} acoustic steps, {:.3g} million particle updates per second and core on {} thread{}\n",
+          summary_.acoustic_steps, summary_.particle_updates_per_s_per_core / 1e6, summary_.threads,
+          summary_.threads == 1 ? "" : "s");
       if (summary_.checkpoint.count > 0)
-        std::cerr << fmt::format("{} checkpoint{}, {:.3g} MB, {:.3g} s each\n", summary_.checkpoint.count, summary_.checkpoint.count == 1 ? "" : "s",
-                                 static_cast<double>(summary_.checkpoint.bytes) / 1e6, summary_.checkpoint.seconds / static_cast<double>(summary_.checkpoint.count));
+        std::cerr << fmt::format(
+            "{} checkpoint{}, {:.3g} MB, {:.3g} s each\n", summary_.checkpoint.count,
+            summary_.checkpoint.count == 1 ? "" : "s",
+            static_cast<double>(summary_.checkpoint.bytes) / 1e6,
+            summary_.checkpoint.seconds / static_cast<double>(summary_.checkpoint.count));
     }
     for (const auto& [name, count] : world.lost())
-      if (count > 0) std::cerr << fmt::format("warning: {} particles of '{}' left the domain and were removed\n", count, name);
-    if (!summary_.expect.empty() && summary_.status != "stopped") std::cout << render_expectations(summary_.expect);
+      if (count > 0)
+        std::cerr << fmt::format("warning: {} particles of '{}' left the domain and were removed\n",
+                                 count, name);
+    if (!summary_.expect.empty() && summary_.status != "stopped")
+      std::cout << render_expectations(summary_.expect);
     if (summary_.status == "stopped")
-      std::cerr << fmt::format("stopped at t = {:.6g} s: {}; the same command with --resume goes on\n", summary_.time_s, summary_.message);
+      std::cerr << fmt::format(
+          "stopped at t = {:.6g} s: {}; the same command with --resume goes on\n", summary_.time_s,
+          summary_.message);
     else if (!summary_.message.empty())
       std::cerr << "error: " << printable(summary_.message, "\n") << "\n"
-                << (summary_.checkpoint.count > 0 ? "the last checkpoint is sound: " + printable(folder.checkpoint()) + "\n" : "");
+                << (summary_.checkpoint.count > 0
+                        ? "the last checkpoint is sound: " + printable(folder.checkpoint()) + "\n"
+                        : "");
   }
 
   const Model& model_;
@@ -241,10 +279,10 @@ class DeckRun {
   clock_type::time_point start_;
   Progress progress_;
   Summary summary_;
-  double wall_before_ = 0;    ///< of the parts of this run that came before, s
-  Index steps_before_ = 0;    ///< advection steps of those
-  Index acoustic_before_ = 0; ///< acoustic steps of those
-  std::string stopped_;       ///< why the run ends early
+  double wall_before_ = 0;     ///< of the parts of this run that came before, s
+  Index steps_before_ = 0;     ///< advection steps of those
+  Index acoustic_before_ = 0;  ///< acoustic steps of those
+  std::string stopped_;        ///< why the run ends early
 };
 
 }  // namespace

@@ -25,7 +25,8 @@ double count_of_every(double interval, double duration, double steps) {
 
 /// Size of a frame of one set, and what is held in memory while it is written.
 template <int Dim>
-std::pair<double, double> frame_size(const World<Dim>& world, const ParticleSet<Dim>& set, const std::vector<Wish>& wishes) {
+std::pair<double, double> frame_size(const World<Dim>& world, const ParticleSet<Dim>& set,
+                                     const std::vector<Wish>& wishes) {
   const auto n = static_cast<std::size_t>(set.size());
   std::vector<VtuField> columns;
   columns.push_back({"id", "", 1, std::span<const std::uint64_t>(set.ids().data(), n)});
@@ -42,14 +43,18 @@ std::pair<double, double> frame_size(const World<Dim>& world, const ParticleSet<
       continue;
     }
     const int components = spec.type == FieldType::vector ? 3 : 1;
-    columns.push_back({w.field, spec.unit.symbol, components, std::span<const double>(any.data(), n * static_cast<std::size_t>(components))});
+    columns.push_back(
+        {w.field, spec.unit.symbol, components,
+         std::span<const double>(any.data(), n * static_cast<std::size_t>(components))});
     vectors += components == 3 ? 1 : 0;
   }
   VtuOptions options;
   options.time = 0;
-  options.precision = world.model().output.frames.precision == "float64" ? VtuPrecision::float64 : VtuPrecision::float32;
+  options.precision = world.model().output.frames.precision == "float64" ? VtuPrecision::float64
+                                                                         : VtuPrecision::float32;
   const auto& x = set.vector(fields::position);
-  const auto bytes = static_cast<double>(vtu_bytes(VtuPoints(set.size(), [&](Index i) { return to_space<Dim>(x[i]); }), columns, options));
+  const auto bytes = static_cast<double>(vtu_bytes(
+      VtuPoints(set.size(), [&](Index i) { return to_space<Dim>(x[i]); }), columns, options));
   return {bytes, vectors * 3 * sizeof(double) * static_cast<double>(n) + 0.2 * bytes};
 }
 
@@ -58,7 +63,9 @@ std::pair<double, double> frame_size(const World<Dim>& world, const ParticleSet<
 double boundaries_bytes(const Model& model) {
   const BoundaryMesh mesh = boundary_mesh(model, 0);
   if (mesh.part.empty()) return 0;
-  return static_cast<double>(vtu_mesh_bytes(mesh.points, model.dimension, mesh.corners, {}, {{"part", "", 1, std::span<const std::int32_t>(mesh.part)}}));
+  return static_cast<double>(
+      vtu_mesh_bytes(mesh.points, model.dimension, mesh.corners, {},
+                     {{"part", "", 1, std::span<const std::int32_t>(mesh.part)}}));
 }
 
 template <int Dim>

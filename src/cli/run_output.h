@@ -10,14 +10,14 @@ namespace sphgeo {
 
 /// How often a run looks at its particles, and what it writes then.
 struct RunOutput {
-  double frames = 0;         ///< number of
-  double observations = 0;   ///< number of times that any probe, row or frame is due
-  double samples_bytes = 0;  ///< of all rows of the probes and of run.csv, in the files
-  double series_bytes = 0;   ///< the same in memory
-  double frame_bytes = 0;    ///< of one frame of all sets but walls
-  double frame_heads = 0;    ///< of that, what does not depend on the number of particles
-  double walls_bytes = 0;    ///< of all frames of the boundaries
-  double buffer_bytes = 0;   ///< memory taken while a frame is written
+  double frames = 0;            ///< number of
+  double observations = 0;      ///< number of times that any probe, row or frame is due
+  double samples_bytes = 0;     ///< of all rows of the probes and of run.csv, in the files
+  double series_bytes = 0;      ///< the same in memory
+  double frame_bytes = 0;       ///< of one frame of all sets but walls
+  double frame_heads = 0;       ///< of that, what does not depend on the number of particles
+  double walls_bytes = 0;       ///< of all frames of the boundaries
+  double buffer_bytes = 0;      ///< memory taken while a frame is written
   double checkpoint_bytes = 0;  ///< of one checkpoint; while it is written it exists in memory too
 };
 
@@ -30,7 +30,8 @@ template <int Dim>
 double saved_bytes(const ParticleSet<Dim>& set) {
   double sum = 0;
   for (const auto& [name, field] : set.fields())
-    if (field->spec().lifetime != Lifetime::derived) sum += static_cast<double>(field->value_bytes());
+    if (field->spec().lifetime != Lifetime::derived)
+      sum += static_cast<double>(field->value_bytes());
   return sum;
 }
 

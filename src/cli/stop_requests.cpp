@@ -30,12 +30,14 @@ void take_signals(void (*handler)(int)) {
   for (const int number : {SIGINT, SIGTERM}) ::sigaction(number, &action, nullptr);
   // A terminal that is closed ends a run in order, unless nohup has said otherwise.
   struct sigaction before {};
-  if (::sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN) ::sigaction(SIGHUP, &action, nullptr);
+  if (::sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
+    ::sigaction(SIGHUP, &action, nullptr);
 }
 
 }  // namespace
 
-StopRequests::StopRequests(std::string stop_file, RunLimits limits) : stop_file_(std::move(stop_file)), limits_(limits) {
+StopRequests::StopRequests(std::string stop_file, RunLimits limits)
+    : stop_file_(std::move(stop_file)), limits_(limits) {
   ::unlink(stop_file_.c_str());
   signals_seen = 0;
   take_signals(on_signal);
@@ -43,9 +45,14 @@ StopRequests::StopRequests(std::string stop_file, RunLimits limits) : stop_file_
 
 StopRequests::~StopRequests() { take_signals(SIG_DFL); }
 
-std::string StopRequests::reason(double wall_seconds, double reserve_seconds, std::optional<long> steps, long acoustic_steps) {
-  if (signals_seen > 0) return last_signal == SIGINT ? "interrupted (SIGINT)" : last_signal == SIGHUP ? "its terminal was closed (SIGHUP)" : "asked to end (SIGTERM)";
-  if (limits_.max_steps && steps && *steps >= *limits_.max_steps) return fmt::format("--max-steps {} reached", *limits_.max_steps);
+std::string StopRequests::reason(double wall_seconds, double reserve_seconds,
+                                 std::optional<long> steps, long acoustic_steps) {
+  if (signals_seen > 0)
+    return last_signal == SIGINT   ? "interrupted (SIGINT)"
+           : last_signal == SIGHUP ? "its terminal was closed (SIGHUP)"
+                                   : "asked to end (SIGTERM)";
+  if (limits_.max_steps && steps && *steps >= *limits_.max_steps)
+    return fmt::format("--max-steps {} reached", *limits_.max_steps);
   if (limits_.max_acoustic_steps && acoustic_steps >= *limits_.max_acoustic_steps)
     return fmt::format("--max-acoustic-steps {} reached", *limits_.max_acoustic_steps);
   // A hundredth is left for what nobody measured.

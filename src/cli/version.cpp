@@ -1,11 +1,11 @@
 // What this build is: its version, and for `--version` everything that a report of a fault needs.
 
-#include <CLI/Version.hpp>
 #include <H5public.h>
 #include <fmt/format.h>
 #include <muParser.h>
 #include <png.h>
 #include <zlib.h>
+#include <CLI/Version.hpp>
 
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
@@ -42,18 +42,22 @@ std::string hdf5() {
 const char* version() { return SPHGEO_VERSION; }
 
 std::string version_text() {
-  // Versions of libraries are those that run where they can be asked, else those that it was built with.
+  // Versions of libraries are those that run where they can be asked, else those that it was built
+  // with.
   return fmt::format(
       "sphgeo {}\n"
       "commit     {}\n"
       "compiler   {}, {}, for {}\n"
       "vectors    {} bits: {} numbers in single, {} in double precision\n"
       "threads    up to {}; OpenMP {} for vectors\n"
-      "libraries  yaml-cpp {}, muparser {}, nlohmann-json {}.{}.{}, HDF5 {}, zlib {}, libpng {}, fmt {}.{}.{}, CLI11 {}, Eigen {}.{}.{}\n",
-      SPHGEO_VERSION, SPHGEO_COMMIT, compiler(), SPHGEO_BUILD_TYPE, SPHGEO_ARCH, 8 * lane_bytes, native_width<float>,
-      native_width<double>, threads(), _OPENMP, SPHGEO_YAML_CPP, muparser(), NLOHMANN_JSON_VERSION_MAJOR,
-      NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH, hdf5(), zlibVersion(), png_get_libpng_ver(nullptr), FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
-      FMT_VERSION % 100, CLI11_VERSION, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION);
+      "libraries  yaml-cpp {}, muparser {}, nlohmann-json {}.{}.{}, HDF5 {}, zlib {}, libpng {}, "
+      "fmt {}.{}.{}, CLI11 {}, Eigen {}.{}.{}\n",
+      SPHGEO_VERSION, SPHGEO_COMMIT, compiler(), SPHGEO_BUILD_TYPE, SPHGEO_ARCH, 8 * lane_bytes,
+      native_width<float>, native_width<double>, threads(), _OPENMP, SPHGEO_YAML_CPP, muparser(),
+      NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH, hdf5(),
+      zlibVersion(), png_get_libpng_ver(nullptr), FMT_VERSION / 10000, FMT_VERSION / 100 % 100,
+      FMT_VERSION % 100, CLI11_VERSION, EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
+      EIGEN_MINOR_VERSION);
 }
 
 }  // namespace sphgeo

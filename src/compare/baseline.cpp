@@ -53,14 +53,16 @@ std::vector<std::size_t> random_choice(std::size_t n, std::size_t most) {
   std::vector<std::size_t> out(n);
   for (std::size_t k = 0; k < n; ++k) out[k] = k;
   if (n <= most) return out;
-  std::nth_element(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(most), out.end(),
-                   [](std::size_t a, std::size_t b) { return random_bits(1, a) < random_bits(1, b); });
+  std::nth_element(
+      out.begin(), out.begin() + static_cast<std::ptrdiff_t>(most), out.end(),
+      [](std::size_t a, std::size_t b) { return random_bits(1, a) < random_bits(1, b); });
   out.resize(most);
   std::sort(out.begin(), out.end());
   return out;
 }
 
-std::vector<double> chosen(const std::vector<double>& values, const std::vector<std::size_t>& which) {
+std::vector<double> chosen(const std::vector<double>& values,
+                           const std::vector<std::size_t>& which) {
   std::vector<double> out;
   for (const std::size_t k : which) out.push_back(values[k]);
   return out;
@@ -71,9 +73,11 @@ Json probes_json(const RunData& run, std::size_t rows) {
   for (std::size_t first = 0; first < run.probes.size();) {
     const ProbeCurve& curve = run.probes[first];
     const auto which = even_choice(curve.t.size(), rows);
-    Json probe = {{"name", curve.probe}, {"t", list(chosen(curve.t, which))}, {"columns", Json::object()}};
+    Json probe = {
+        {"name", curve.probe}, {"t", list(chosen(curve.t, which))}, {"columns", Json::object()}};
     for (; first < run.probes.size() && run.probes[first].probe == probe["name"]; ++first)
-      probe["columns"][run.probes[first].column] = {{"unit", run.probes[first].unit}, {"values", list(chosen(run.probes[first].y, which))}};
+      probe["columns"][run.probes[first].column] = {
+          {"unit", run.probes[first].unit}, {"values", list(chosen(run.probes[first].y, which))}};
     out.push_back(std::move(probe));
   }
   return out;
@@ -90,7 +94,8 @@ Json sets_json(const RunData& run, std::size_t particles) {
       row[std::string(1, "xyz"[axis])] = list(x);
     }
     row["fields"] = Json::object();
-    for (const FieldState& field : set.fields) row["fields"][field.name] = list(chosen(field.values, which));
+    for (const FieldState& field : set.fields)
+      row["fields"][field.name] = list(chosen(field.values, which));
     out.push_back(std::move(row));
   }
   return out;
@@ -104,9 +109,11 @@ RunData from_json(const Json& j) {
   run.date = j.at("date");
   run.resolution = j.at("resolution");
   run.time = j.at("time_s");
-  for (const auto& [name, count] : j.at("steps").items()) run.steps.emplace_back(name, count.get<double>());
+  for (const auto& [name, count] : j.at("steps").items())
+    run.steps.emplace_back(name, count.get<double>());
   for (const auto& [name, row] : j.at("ledger").items())
-    run.ledger.emplace_back(name, LedgerState{numbers(row.at("initial")), numbers(row.at("final"))});
+    run.ledger.emplace_back(name,
+                            LedgerState{numbers(row.at("initial")), numbers(row.at("final"))});
   for (const auto& [name, row] : j.at("expect").items()) {
     ResultState result;
     if (row.at("value").is_number()) result.value = row.at("value").get<double>();
@@ -116,28 +123,37 @@ RunData from_json(const Json& j) {
   }
   for (const Json& probe : j.at("probes")) {
     const std::vector<double> t = numbers(probe.at("t"));
-    if (!std::all_of(t.begin(), t.end(), [](double x) { return std::isfinite(x); }) || !std::is_sorted(t.begin(), t.end()))
+    if (!std::all_of(t.begin(), t.end(), [](double x) { return std::isfinite(x); }) ||
+        !std::is_sorted(t.begin(), t.end()))
       throw std::runtime_error("the times of a probe do not rise");
     for (const auto& [column, row] : probe.at("columns").items()) {
-      run.probes.push_back({probe.at("name"), column, row.at("unit"), t, numbers(row.at("values"))});
-      if (run.probes.back().y.size() != t.size()) throw std::runtime_error("a probe's column has another length than its times");
+      run.probes.push_back(
+          {probe.at("name"), column, row.at("unit"), t, numbers(row.at("values"))});
+      if (run.probes.back().y.size() != t.size())
+        throw std::runtime_error("a probe's column has another length than its times");
     }
   }
   for (const Json& row : j.at("sets")) {
     SetState set;
     set.set = row.at("name");
-    if (!row.at("particles").is_number_unsigned()) throw std::runtime_error("the number of particles is no whole number");
+    if (!row.at("particles").is_number_unsigned())
+      throw std::runtime_error("the number of particles is no whole number");
     set.particles = row.at("particles").get<Index>();
-    if (set.particles < 0 || set.particles > (Index{1} << 50)) throw std::runtime_error("the number of particles is absurd");
-    const std::vector<double> x = numbers(row.at("x")), y = numbers(row.at("y")), z = numbers(row.at("z"));
-    if (x.size() != y.size() || x.size() != z.size()) throw std::runtime_error("the places of a set differ in length");
+    if (set.particles < 0 || set.particles > (Index{1} << 50))
+      throw std::runtime_error("the number of particles is absurd");
+    const std::vector<double> x = numbers(row.at("x")), y = numbers(row.at("y")),
+                              z = numbers(row.at("z"));
+    if (x.size() != y.size() || x.size() != z.size())
+      throw std::runtime_error("the places of a set differ in length");
     for (std::size_t k = 0; k < x.size(); ++k) {
       set.places.emplace_back(x[k], y[k], z[k]);
-      if (!set.places.back().allFinite()) throw std::runtime_error("the place of a particle is no number");
+      if (!set.places.back().allFinite())
+        throw std::runtime_error("the place of a particle is no number");
     }
     for (const auto& [name, values] : row.at("fields").items()) {
       set.fields.push_back({name, numbers(values)});
-      if (set.fields.back().values.size() != x.size()) throw std::runtime_error("a field has another length than its set");
+      if (set.fields.back().values.size() != x.size())
+        throw std::runtime_error("a field has another length than its set");
     }
     run.sets.push_back(std::move(set));
   }
@@ -161,17 +177,21 @@ void write_baseline(const std::string& path, const RunData& run, const BaselineS
   j["steps"] = Json::object();
   for (const auto& [name, count] : run.steps) j["steps"][name] = count;
   j["ledger"] = Json::object();
-  for (const auto& [name, row] : run.ledger) j["ledger"][name] = {{"initial", list(row.initial)}, {"final", list(row.final)}};
+  for (const auto& [name, row] : run.ledger)
+    j["ledger"][name] = {{"initial", list(row.initial)}, {"final", list(row.final)}};
   j["expect"] = Json::object();
   for (const auto& [name, r] : run.results)
-    j["expect"][name] = {{"value", r.value ? number(*r.value) : Json(nullptr)}, {"tolerance", r.tolerance}, {"pass", r.pass}};
+    j["expect"][name] = {{"value", r.value ? number(*r.value) : Json(nullptr)},
+                         {"tolerance", r.tolerance},
+                         {"pass", r.pass}};
   j["probes"] = probes_json(run, size.rows);
   j["sets"] = sets_json(run, size.particles);
   // One line a top-level entry: a change of one of them shows as such.
   std::string text = "{\n";
   std::size_t left = j.size();
   for (const auto& [key, value] : j.items())
-    text += Json(key).dump() + ": " + value.dump(-1, ' ', false, Json::error_handler_t::replace) + (--left > 0 ? ",\n" : "\n");
+    text += Json(key).dump() + ": " + value.dump(-1, ' ', false, Json::error_handler_t::replace) +
+            (--left > 0 ? ",\n" : "\n");
   write_file_atomically(path, text + "}\n");
 }
 
@@ -179,7 +199,9 @@ RunData read_baseline(const std::string& path) {
   const Json j = Json::parse(read_file(path), nullptr, false);
   const auto at = j.is_object() ? j.find("kind") : j.end();
   if (!j.is_object() || at == j.end() || *at != kind)
-    throw Error(ExitCode::usage, path + ": this is no baseline; expected a run folder, or a file that 'sphgeo compare RUN FILE --update' has written");
+    throw Error(ExitCode::usage, path +
+                                     ": this is no baseline; expected a run folder, or a file that "
+                                     "'sphgeo compare RUN FILE --update' has written");
   try {
     RunData run = from_json(j);
     run.path = path;

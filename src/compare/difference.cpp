@@ -15,7 +15,8 @@ namespace sphgeo {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-/// Places of a set that are looked up in the other run: enough for a mean, few enough for sets of millions.
+/// Places of a set that are looked up in the other run: enough for a mean, few enough for sets of
+/// millions.
 constexpr std::size_t most_places = 2000;
 
 struct Span {
@@ -41,7 +42,8 @@ struct Mismatch {
     squares += (x - y) * (x - y);
     used += 1;
   }
-  /// The root mean square; zero where it is what the seven digits of baselines leave out of values of this size.
+  /// The root mean square; zero where it is what the seven digits of baselines leave out of values
+  /// of this size.
   double rms(double largest) const {
     const double value = used > 0 ? std::sqrt(squares / used) : 0;
     return value <= 1e-6 * largest ? 0 : value;
@@ -64,17 +66,21 @@ double share(double difference, double scale) {
 
 class Comparison {
  public:
-  Comparison(const RunData& run, const RunData& base, const Tolerances& tolerances) : run_(run), base_(base), tolerances_(tolerances) {}
+  Comparison(const RunData& run, const RunData& base, const Tolerances& tolerances)
+      : run_(run), base_(base), tolerances_(tolerances) {}
 
   std::vector<Difference> operator()() {
     const bool same = run_.status == base_.status;
-    found_.push_back({"status", "", same ? 0 : infinite, 0, same, same ? "" : run_.status + ", was " + base_.status});
+    found_.push_back({"status", "", same ? 0 : infinite, 0, same,
+                      same ? "" : run_.status + ", was " + base_.status});
     compare_steps();
     compare_probes();
     compare_sets();
     compare_ledger();
     compare_results();
-    std::stable_sort(found_.begin(), found_.end(), [](const Difference& a, const Difference& b) { return severity(a) > severity(b); });
+    std::stable_sort(found_.begin(), found_.end(), [](const Difference& a, const Difference& b) {
+      return severity(a) > severity(b);
+    });
     return std::move(found_);
   }
 
@@ -87,110 +93,151 @@ class Comparison {
     return d.difference / d.tolerance;
   }
 
-  void add(const std::string& kind, const std::string& name, double difference, std::string note = {}) {
+  void add(const std::string& kind, const std::string& name, double difference,
+           std::string note = {}) {
     const double tolerance = tolerances_.of(kind, name);
     found_.push_back({kind, name, difference, tolerance, difference <= tolerance, std::move(note)});
   }
-  void missing(const std::string& kind, const std::string& name) { found_.push_back({"missing", kind + " " + name, infinite, 0, false, "only the baseline has it"}); }
-  void added(const std::string& kind, const std::string& name) { found_.push_back({"new", kind + " " + name, 0, 0, true, "only the run has it"}); }
+  void missing(const std::string& kind, const std::string& name) {
+    found_.push_back(
+        {"missing", kind + " " + name, infinite, 0, false, "only the baseline has it"});
+  }
+  void added(const std::string& kind, const std::string& name) {
+    found_.push_back({"new", kind + " " + name, 0, 0, true, "only the run has it"});
+  }
 
   /// Calls `both(run's, base's)` for what stands in both under the same name, and reports the rest.
   template <class List, class Name, class Both>
   void match(const std::string& kind, const List& run, const List& base, Name&& name, Both&& both) {
     for (const auto& b : base) {
-      const auto at = std::find_if(run.begin(), run.end(), [&](const auto& r) { return name(r) == name(b); });
+      const auto at =
+          std::find_if(run.begin(), run.end(), [&](const auto& r) { return name(r) == name(b); });
       if (at == run.end()) missing(kind, name(b));
       else both(*at, b);
     }
     for (const auto& r : run)
-      if (std::none_of(base.begin(), base.end(), [&](const auto& b) { return name(r) == name(b); })) added(kind, name(r));
+      if (std::none_of(base.begin(), base.end(), [&](const auto& b) { return name(r) == name(b); }))
+        added(kind, name(r));
   }
 
   void compare_steps() {
-    match("steps", run_.steps, base_.steps, [](const auto& s) { return s.first; }, [&](const auto& r, const auto& b) {
-      add("steps", b.first, share(std::abs(r.second - b.second), b.second), fmt::format("{:.0f}, was {:.0f}", r.second, b.second));
-    });
+    match(
+        "steps", run_.steps, base_.steps, [](const auto& s) { return s.first; },
+        [&](const auto& r, const auto& b) {
+          add("steps", b.first, share(std::abs(r.second - b.second), b.second),
+              fmt::format("{:.0f}, was {:.0f}", r.second, b.second));
+        });
   }
 
   void compare_probes() {
-    match("probe", run_.probes, base_.probes, [](const ProbeCurve& c) { return c.probe + "." + c.column; }, [&](const ProbeCurve& r, const ProbeCurve& b) {
-      const CurveDistance d = curve_distance(r, b);
-      double scale = d.range;
-      for (const ProbeCurve& other : base_.probes)
-        if (other.probe == b.probe && other.unit == b.unit) scale = std::max(scale, least_share * span_of(other.y).size());
-      const std::string name = b.probe + "." + b.column;
-      std::string note = fmt::format("range {:.4g}", d.range);
-      if (d.unsupported > 0) note += fmt::format("; at {:.3g} % of the times only one has a value", 100 * d.unsupported);
-      add("probe", name, std::max(share(d.rms, scale), d.unsupported), note);
-    });
+    match(
+        "probe", run_.probes, base_.probes,
+        [](const ProbeCurve& c) { return c.probe + "." + c.column; },
+        [&](const ProbeCurve& r, const ProbeCurve& b) {
+          const CurveDistance d = curve_distance(r, b);
+          double scale = d.range;
+          for (const ProbeCurve& other : base_.probes)
+            if (other.probe == b.probe && other.unit == b.unit)
+              scale = std::max(scale, least_share * span_of(other.y).size());
+          const std::string name = b.probe + "." + b.column;
+          std::string note = fmt::format("range {:.4g}", d.range);
+          if (d.unsupported > 0)
+            note +=
+                fmt::format("; at {:.3g} % of the times only one has a value", 100 * d.unsupported);
+          add("probe", name, std::max(share(d.rms, scale), d.unsupported), note);
+        });
   }
 
   void compare_sets() {
-    match("set", run_.sets, base_.sets, [](const SetState& s) { return s.set; }, [&](const SetState& r, const SetState& b) {
-      const double change = static_cast<double>(std::abs(r.particles - b.particles));
-      add("particles", b.set, share(change, static_cast<double>(b.particles)), fmt::format("{}, were {}", r.particles, b.particles));
-      if (b.places.empty()) return;
-      if (r.places.empty()) return missing("particles of", b.set);
-      compare_fields(r, b);
-    });
+    match(
+        "set", run_.sets, base_.sets, [](const SetState& s) { return s.set; },
+        [&](const SetState& r, const SetState& b) {
+          const double change = static_cast<double>(std::abs(r.particles - b.particles));
+          add("particles", b.set, share(change, static_cast<double>(b.particles)),
+              fmt::format("{}, were {}", r.particles, b.particles));
+          if (b.places.empty()) return;
+          if (r.places.empty()) return missing("particles of", b.set);
+          compare_fields(r, b);
+        });
   }
 
   void compare_fields(const SetState& r, const SetState& b) {
     std::vector<std::size_t> sample;
     for (std::size_t k = 0; k < b.places.size(); ++k)
-      if (b.places.size() <= most_places || random_bits(2, k) % b.places.size() < most_places) sample.push_back(k);
+      if (b.places.size() <= most_places || random_bits(2, k) % b.places.size() < most_places)
+        sample.push_back(k);
     std::vector<Vec3> places;
     for (const std::size_t k : sample) places.push_back(b.places[k]);
     const std::vector<std::size_t> nearest = nearest_places(places, r.places);
     double sum = 0;
-    for (std::size_t k = 0; k < places.size(); ++k) sum += (places[k] - r.places[nearest[k]]).norm();
+    for (std::size_t k = 0; k < places.size(); ++k)
+      sum += (places[k] - r.places[nearest[k]]).norm();
     const double mean = sum / static_cast<double>(places.size());
-    add("places", b.set, base_.resolution > 0 ? mean / base_.resolution : mean, fmt::format("mean {:.3g} m", mean));
-    match("field", r.fields, b.fields, [&](const FieldState& f) { return b.set + "." + f.name; }, [&](const FieldState& fr, const FieldState& fb) {
-      const Span range = span_of(fb.values);
-      double scale = range.size();
-      for (const FieldState& other : b.fields)
-        if (vector_of(other.name) == vector_of(fb.name)) scale = std::max(scale, least_share * span_of(other.values).size());
-      Mismatch m;
-      for (std::size_t k = 0; k < sample.size(); ++k) m.add(fr.values[nearest[k]], fb.values[sample[k]]);
-      std::string note = fmt::format("range {:.4g}", range.size());
-      if (m.unlike > 0) note += fmt::format("; {:.0f} particles have a value in only one", m.unlike);
-      add("field", b.set + "." + fb.name, std::max(share(m.rms(range.largest()), scale), m.unlike / static_cast<double>(sample.size())), note);
-    });
+    add("places", b.set, base_.resolution > 0 ? mean / base_.resolution : mean,
+        fmt::format("mean {:.3g} m", mean));
+    match(
+        "field", r.fields, b.fields, [&](const FieldState& f) { return b.set + "." + f.name; },
+        [&](const FieldState& fr, const FieldState& fb) {
+          const Span range = span_of(fb.values);
+          double scale = range.size();
+          for (const FieldState& other : b.fields)
+            if (vector_of(other.name) == vector_of(fb.name))
+              scale = std::max(scale, least_share * span_of(other.values).size());
+          Mismatch m;
+          for (std::size_t k = 0; k < sample.size(); ++k)
+            m.add(fr.values[nearest[k]], fb.values[sample[k]]);
+          std::string note = fmt::format("range {:.4g}", range.size());
+          if (m.unlike > 0)
+            note += fmt::format("; {:.0f} particles have a value in only one", m.unlike);
+          add("field", b.set + "." + fb.name,
+              std::max(share(m.rms(range.largest()), scale),
+                       m.unlike / static_cast<double>(sample.size())),
+              note);
+        });
   }
 
   void compare_ledger() {
-    match("ledger", run_.ledger, base_.ledger, [](const auto& row) { return row.first; }, [&](const auto& r, const auto& b) {
-      Span size;
-      for (const auto* values : {&b.second.initial, &b.second.final})
-        for (const double v : *values) size.add(v);
-      double worst = r.second.final.size() == b.second.final.size() ? 0 : infinite;
-      for (std::size_t k = 0; k < std::min(r.second.final.size(), b.second.final.size()); ++k) {
-        const double x = r.second.final[k], y = b.second.final[k];
-        if (std::isfinite(x) != std::isfinite(y)) worst = infinite;
-        else if (std::isfinite(x)) worst = std::max(worst, std::abs(x - y));
-      }
-      // Rounding of the baseline, and momentum that is zero but for rounding.
-      if (worst <= 1e-6 * size.largest() || worst <= 1e-12) worst = 0;
-      add("ledger", b.first, share(worst, size.largest()), fmt::format("size {:.4g}", size.largest()));
-    });
+    match(
+        "ledger", run_.ledger, base_.ledger, [](const auto& row) { return row.first; },
+        [&](const auto& r, const auto& b) {
+          Span size;
+          for (const auto* values : {&b.second.initial, &b.second.final})
+            for (const double v : *values) size.add(v);
+          double worst = r.second.final.size() == b.second.final.size() ? 0 : infinite;
+          for (std::size_t k = 0; k < std::min(r.second.final.size(), b.second.final.size()); ++k) {
+            const double x = r.second.final[k], y = b.second.final[k];
+            if (std::isfinite(x) != std::isfinite(y)) worst = infinite;
+            else if (std::isfinite(x)) worst = std::max(worst, std::abs(x - y));
+          }
+          // Rounding of the baseline, and momentum that is zero but for rounding.
+          if (worst <= 1e-6 * size.largest() || worst <= 1e-12) worst = 0;
+          add("ledger", b.first, share(worst, size.largest()),
+              fmt::format("size {:.4g}", size.largest()));
+        });
   }
 
   void compare_results() {
-    match("result", run_.results, base_.results, [](const auto& row) { return row.first; }, [&](const auto& r, const auto& b) {
-      const ResultState &now = r.second, &then = b.second;
-      std::string note = fmt::format("{}, was {}", now.value ? fmt::format("{:.6g}", *now.value) : "no value", then.value ? fmt::format("{:.6g}", *then.value) : "none");
-      if (now.pass != then.pass) note += now.pass ? "; passes now" : "; misses its deck's tolerance, met it before";
-      if ((then.pass && !now.pass) || now.value.has_value() != then.value.has_value()) {
-        found_.push_back({"result", b.first, infinite, tolerances_.of("result", b.first), false, note});
-        return;
-      }
-      if (!now.value) return add("result", b.first, 0, note);
-      double change = std::abs(*now.value - *then.value);
-      if (change <= 1e-6 * std::abs(*then.value)) change = 0;
-      // A value near zero is small against what the deck allows it.
-      add("result", b.first, share(change, std::max(std::abs(*then.value), then.tolerance)), note);
-    });
+    match(
+        "result", run_.results, base_.results, [](const auto& row) { return row.first; },
+        [&](const auto& r, const auto& b) {
+          const ResultState &now = r.second, &then = b.second;
+          std::string note =
+              fmt::format("{}, was {}", now.value ? fmt::format("{:.6g}", *now.value) : "no value",
+                          then.value ? fmt::format("{:.6g}", *then.value) : "none");
+          if (now.pass != then.pass)
+            note += now.pass ? "; passes now" : "; misses its deck's tolerance, met it before";
+          if ((then.pass && !now.pass) || now.value.has_value() != then.value.has_value()) {
+            found_.push_back(
+                {"result", b.first, infinite, tolerances_.of("result", b.first), false, note});
+            return;
+          }
+          if (!now.value) return add("result", b.first, 0, note);
+          double change = std::abs(*now.value - *then.value);
+          if (change <= 1e-6 * std::abs(*then.value)) change = 0;
+          // A value near zero is small against what the deck allows it.
+          add("result", b.first, share(change, std::max(std::abs(*then.value), then.tolerance)),
+              note);
+        });
   }
 
   const RunData &run_, &base_;
@@ -198,18 +245,22 @@ class Comparison {
   std::vector<Difference> found_;
 };
 
-/// The value of the curve at a time, NaN outside of it and beside gaps. `from` moves along with the time.
+/// The value of the curve at a time, NaN outside of it and beside gaps. `from` moves along with the
+/// time.
 double at_time(const ProbeCurve& curve, double time, std::size_t& from) {
   const std::vector<double>& t = curve.t;
   if (t.empty()) return std::nan("");
   // The last row of a run that took other steps may lie a step earlier or later.
-  if (time >= t.back()) return time <= t.back() + 0.02 * (t.back() - t.front()) ? curve.y.back() : std::nan("");
-  if (time <= t.front()) return time >= t.front() - 0.02 * (t.back() - t.front()) ? curve.y.front() : std::nan("");
+  if (time >= t.back())
+    return time <= t.back() + 0.02 * (t.back() - t.front()) ? curve.y.back() : std::nan("");
+  if (time <= t.front())
+    return time >= t.front() - 0.02 * (t.back() - t.front()) ? curve.y.front() : std::nan("");
   if (!(time > t.front() && time < t.back())) return std::nan("");  // a time that is no number
   while (from + 2 < t.size() && t[from + 1] <= time) ++from;
   const double width = t[from + 1] - t[from];
   if (!(width > 0)) return curve.y[from + 1];
-  // Baselines hold times to seven digits: what is that near to a row means the row, also beside a gap.
+  // Baselines hold times to seven digits: what is that near to a row means the row, also beside a
+  // gap.
   const double digits = 1e-6 * std::max(std::abs(t.front()), std::abs(t.back()));
   if (time - t[from] <= digits) return curve.y[from];
   if (t[from + 1] - time <= digits) return curve.y[from + 1];
@@ -231,7 +282,8 @@ CurveDistance curve_distance(const ProbeCurve& run, const ProbeCurve& baseline) 
   return {m.rms(range.largest()), range.size(), m.unlike / n};
 }
 
-std::vector<std::size_t> nearest_places(const std::vector<Vec3>& places, const std::vector<Vec3>& among) {
+std::vector<std::size_t> nearest_places(const std::vector<Vec3>& places,
+                                        const std::vector<Vec3>& among) {
   std::vector<std::size_t> nearest(places.size(), 0);
   parallel_for(static_cast<Index>(places.size()), [&](Index p) {
     const auto k = static_cast<std::size_t>(p);
@@ -247,7 +299,8 @@ std::vector<std::size_t> nearest_places(const std::vector<Vec3>& places, const s
   return nearest;
 }
 
-std::vector<Difference> compare_runs(const RunData& run, const RunData& baseline, const Tolerances& tolerances) {
+std::vector<Difference> compare_runs(const RunData& run, const RunData& baseline,
+                                     const Tolerances& tolerances) {
   return Comparison(run, baseline, tolerances)();
 }
 
@@ -255,22 +308,33 @@ std::string render_differences(const std::vector<Difference>& differences, std::
   std::size_t width = 4;
   std::size_t passed = 0;
   const auto listed = [&](const Difference& d) { return !d.pass || passed < shown; };
-  for (const Difference& d : differences) width = std::max(width, std::min<std::size_t>(40, d.whole_name().size()));
-  std::string out = fmt::format("  {:<{}}  {:>10}  {:>10}\n", "what", width, "difference", "tolerance");
+  for (const Difference& d : differences)
+    width = std::max(width, std::min<std::size_t>(40, d.whole_name().size()));
+  std::string out =
+      fmt::format("  {:<{}}  {:>10}  {:>10}\n", "what", width, "difference", "tolerance");
   for (const Difference& d : differences) {
     if (!listed(d)) continue;
     if (d.pass) ++passed;
-    out += fmt::format("  {:<{}}  {:>10}  {:>10}  {}{}\n", printable(d.whole_name()), width, fmt::format("{:.3g}", d.difference), fmt::format("{:.3g}", d.tolerance),
-                       d.pass ? "pass" : "FAIL", d.note.empty() ? "" : "  (" + printable(d.note) + ")");
+    out += fmt::format("  {:<{}}  {:>10}  {:>10}  {}{}\n", printable(d.whole_name()), width,
+                       fmt::format("{:.3g}", d.difference), fmt::format("{:.3g}", d.tolerance),
+                       d.pass ? "pass" : "FAIL",
+                       d.note.empty() ? "" : "  (" + printable(d.note) + ")");
   }
   return out;
 }
 
 nlohmann::ordered_json to_json(const std::vector<Difference>& differences) {
   auto out = nlohmann::ordered_json::array();
-  const auto number = [](double v) { return std::isfinite(v) ? nlohmann::ordered_json(v) : nlohmann::ordered_json(nullptr); };
+  const auto number = [](double v) {
+    return std::isfinite(v) ? nlohmann::ordered_json(v) : nlohmann::ordered_json(nullptr);
+  };
   for (const Difference& d : differences)
-    out.push_back({{"kind", d.kind}, {"name", d.name}, {"difference", number(d.difference)}, {"tolerance", number(d.tolerance)}, {"pass", d.pass}, {"note", d.note}});
+    out.push_back({{"kind", d.kind},
+                   {"name", d.name},
+                   {"difference", number(d.difference)},
+                   {"tolerance", number(d.tolerance)},
+                   {"pass", d.pass},
+                   {"note", d.note}});
   return out;
 }
 

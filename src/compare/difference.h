@@ -12,22 +12,24 @@ namespace sphgeo {
 
 /// One thing that was compared.
 struct Difference {
-  std::string kind;       ///< status, particles, steps, probe, places, field, ledger, result, missing, new
-  std::string name;       ///< "gauge.level"
-  double difference = 0;  ///< as the tolerance of its kind means it; infinite when it cannot be compared
+  std::string
+      kind;  ///< status, particles, steps, probe, places, field, ledger, result, missing, new
+  std::string name;  ///< "gauge.level"
+  double difference =
+      0;  ///< as the tolerance of its kind means it; infinite when it cannot be compared
   double tolerance = 0;
   bool pass = false;
-  std::string note;       ///< values, or why it could not be compared
+  std::string note;  ///< values, or why it could not be compared
 
   std::string whole_name() const { return name.empty() ? kind : kind + " " + name; }
 };
 
-/// All that the baseline holds, compared. A component of a vector, or a column of a probe, whose range is below a
-/// hundredth of that of its companions (the other components; the columns of the same unit) is measured by that
-/// hundredth: it is noise about zero. The list has the worst first, by difference over
-/// tolerance. What only the run has is
-/// told (kind `new`) and passes.
-std::vector<Difference> compare_runs(const RunData& run, const RunData& baseline, const Tolerances& tolerances);
+/// All that the baseline holds, compared. A component of a vector, or a column of a probe, whose
+/// range is below a hundredth of that of its companions (the other components; the columns of the
+/// same unit) is measured by that hundredth: it is noise about zero. The list has the worst first,
+/// by difference over tolerance. What only the run has is told (kind `new`) and passes.
+std::vector<Difference> compare_runs(const RunData& run, const RunData& baseline,
+                                     const Tolerances& tolerances);
 
 /// How far a curve is from the baseline's at the baseline's times.
 struct CurveDistance {
@@ -38,7 +40,8 @@ struct CurveDistance {
 CurveDistance curve_distance(const ProbeCurve& run, const ProbeCurve& baseline);
 
 /// For each place the index of the nearest of `among` (not empty).
-std::vector<std::size_t> nearest_places(const std::vector<Vec3>& places, const std::vector<Vec3>& among);
+std::vector<std::size_t> nearest_places(const std::vector<Vec3>& places,
+                                        const std::vector<Vec3>& among);
 
 /// As a table, the worst first: all that fail and, of the others, the `shown` nearest to failing.
 std::string render_differences(const std::vector<Difference>& differences, std::size_t shown);

@@ -15,7 +15,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Error refusal(const std::string& path, const std::string& why) { return Error(ExitCode::usage, path + ": " + why); }
+Error refusal(const std::string& path, const std::string& why) {
+  return Error(ExitCode::usage, path + ": " + why);
+}
 
 /// A number or a list of numbers; null stands for what is not finite.
 std::vector<double> numbers(const Json& j) {
@@ -35,9 +37,12 @@ SetState last_frame(const std::string& set_name, const VtuFrame& frame) {
     if (field.name == "id") continue;
     const auto n = static_cast<std::size_t>(field.components);
     for (std::size_t c = 0; c < n; ++c) {
-      const std::string part = n == 1 ? "" : n == 3 ? std::string(".") + "xyz"[c] : "." + std::to_string(c);
+      const std::string part = n == 1   ? ""
+                               : n == 3 ? std::string(".") + "xyz"[c]
+                                        : "." + std::to_string(c);
       FieldState one{field.name + part, {}};
-      for (std::size_t k = 0; k < field.tuples(); ++k) one.values.push_back(field.values[k * n + c]);
+      for (std::size_t k = 0; k < field.tuples(); ++k)
+        one.values.push_back(field.values[k * n + c]);
       set.fields.push_back(std::move(one));
     }
   }
@@ -57,7 +62,10 @@ void take_summary(const Json& summary, RunData& run) {
   for (const Json& row : value_at(summary, "/expect")) {
     if (!row.is_object()) continue;
     const Json& pass = value_at(row, "/pass");
-    run.results.emplace_back(text_at(row, "/name"), ResultState{number_at(row, "/value"), number_at(row, "/tolerance").value_or(0), pass.is_boolean() && pass.get<bool>()});
+    run.results.emplace_back(
+        text_at(row, "/name"),
+        ResultState{number_at(row, "/value"), number_at(row, "/tolerance").value_or(0),
+                    pass.is_boolean() && pass.get<bool>()});
   }
 }
 
@@ -66,13 +74,15 @@ void take_summary(const Json& summary, RunData& run) {
 RunData read_run_data(const std::string& folder) {
   const RunRecord record = read_run(folder);
   if (!record.problems.empty()) throw refusal(folder, record.problems.front());
-  if (text_at(record.summary, "/status").empty()) throw refusal(folder, "there is no summary.json: this run has not ended");
+  if (text_at(record.summary, "/status").empty())
+    throw refusal(folder, "there is no summary.json: this run has not ended");
   RunData run;
   run.path = folder;
   run.resolution = record.model ? record.model->resolution : 0;
   take_summary(record.summary, run);
   for (const TimeSeries& probe : record.probes)
-    for (const NamedColumn& column : probe.columns) run.probes.push_back({probe.name, column.name, column.unit, probe.time, column.values});
+    for (const NamedColumn& column : probe.columns)
+      run.probes.push_back({probe.name, column.name, column.unit, probe.time, column.values});
   for (const auto& [set, frames] : record.frames) {
     if (frames.empty()) continue;
     const VtuFrame frame = read_vtu(frames.back().file);
@@ -82,6 +92,8 @@ RunData read_run_data(const std::string& folder) {
   return run;
 }
 
-RunData read_either(const std::string& path) { return std::filesystem::is_directory(path) ? read_run_data(path) : read_baseline(path); }
+RunData read_either(const std::string& path) {
+  return std::filesystem::is_directory(path) ? read_run_data(path) : read_baseline(path);
+}
 
 }  // namespace sphgeo

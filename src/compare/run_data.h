@@ -1,5 +1,6 @@
 #pragma once
-// What two runs are compared by: curves of probes, fields at the end, conserved quantities, results.
+// What two runs are compared by: curves of probes, fields at the end, conserved quantities,
+// results.
 
 #include <map>
 #include <nlohmann/json.hpp>
@@ -46,8 +47,8 @@ struct ResultState {
 /// A run or a baseline.
 struct RunData {
   std::string path, title, status, version, date;
-  double resolution = 0;  ///< m
-  double time = 0;        ///< simulated, s
+  double resolution = 0;                              ///< m
+  double time = 0;                                    ///< simulated, s
   std::vector<std::pair<std::string, double>> steps;  ///< advection, acoustic, solid
   std::vector<ProbeCurve> probes;
   std::vector<SetState> sets;
@@ -55,12 +56,12 @@ struct RunData {
   std::vector<std::pair<std::string, ResultState>> results;
 };
 
-/// Reads a run folder: all rows of all probes and the last frame of each set of particles. Throws IoError,
-/// TableError; Error (usage) when the folder holds no finished run.
+/// Reads a run folder: all rows of all probes and the last frame of each set of particles. Throws
+/// IoError, TableError; Error (usage) when the folder holds no finished run.
 RunData read_run_data(const std::string& folder);
 
-/// Reads a baseline that write_baseline() has written. Throws IoError; Error (usage) with the path when it is damaged
-/// or no baseline.
+/// Reads a baseline that write_baseline() has written. Throws IoError; Error (usage) with the path
+/// when it is damaged or no baseline.
 RunData read_baseline(const std::string& path);
 
 /// How much of a run a baseline keeps.

@@ -9,21 +9,36 @@ namespace sphgeo {
 
 Schema<ToleranceRule> ToleranceRule::schema() {
   Schema<ToleranceRule> s("tolerance", "A tolerance for single findings.");
-  s.required("name", &ToleranceRule::name, unit::none, "name of the findings as they are printed; * stands for any part");
+  s.required("name", &ToleranceRule::name, unit::none,
+             "name of the findings as they are printed; * stands for any part");
   s.required("tolerance", &ToleranceRule::tolerance, unit::none, "largest difference").at_least(0);
   return s;
 }
 
 Schema<Tolerances> Tolerances::schema() {
   Schema<Tolerances> s("tolerances", "How far a run may be from its baseline.");
-  s.optional("probes", &Tolerances::probes, unit::none, "root mean square of a curve's difference, by its range").at_least(0);
-  s.optional("fields", &Tolerances::fields, unit::none, "root mean square of a field's difference at nearest particles, by its range").at_least(0);
-  s.optional("places", &Tolerances::places, unit::none, "mean distance to the nearest particle, in spacings").at_least(0);
-  s.optional("ledger", &Tolerances::ledger, unit::none, "difference of a conserved quantity at the end, by its size").at_least(0);
-  s.optional("results", &Tolerances::results, unit::none, "difference of a result under 'expect', by its size").at_least(0);
-  s.optional("steps", &Tolerances::steps, unit::none, "difference in the number of steps").at_least(0);
-  s.optional("particles", &Tolerances::particles, unit::none, "difference in the number of particles").at_least(0);
-  s.optional("rules", &Tolerances::rules, unit::none, "tolerances for single findings; the last that fits decides");
+  s.optional("probes", &Tolerances::probes, unit::none,
+             "root mean square of a curve's difference, by its range")
+      .at_least(0);
+  s.optional("fields", &Tolerances::fields, unit::none,
+             "root mean square of a field's difference at nearest particles, by its range")
+      .at_least(0);
+  s.optional("places", &Tolerances::places, unit::none,
+             "mean distance to the nearest particle, in spacings")
+      .at_least(0);
+  s.optional("ledger", &Tolerances::ledger, unit::none,
+             "difference of a conserved quantity at the end, by its size")
+      .at_least(0);
+  s.optional("results", &Tolerances::results, unit::none,
+             "difference of a result under 'expect', by its size")
+      .at_least(0);
+  s.optional("steps", &Tolerances::steps, unit::none, "difference in the number of steps")
+      .at_least(0);
+  s.optional("particles", &Tolerances::particles, unit::none,
+             "difference in the number of particles")
+      .at_least(0);
+  s.optional("rules", &Tolerances::rules, unit::none,
+             "tolerances for single findings; the last that fits decides");
   return s;
 }
 

@@ -32,14 +32,17 @@ int write_fully(int descriptor, const char* data, std::size_t bytes) {
   return 0;
 }
 
-/// Hands whole pages to the disk without a copy in the system's cache, which takes ten times the processor time. Returns how
-/// many bytes it wrote: fewer than all, or none, where the file system, the memory or the place in the file is not made for that.
-std::size_t write_directly([[maybe_unused]] int descriptor, [[maybe_unused]] const char* data, [[maybe_unused]] std::size_t bytes,
+/// Hands whole pages to the disk without a copy in the system's cache, which takes ten times the
+/// processor time. Returns how many bytes it wrote: fewer than all, or none, where the file system,
+/// the memory or the place in the file is not made for that.
+std::size_t write_directly([[maybe_unused]] int descriptor, [[maybe_unused]] const char* data,
+                           [[maybe_unused]] std::size_t bytes,
                            [[maybe_unused]] std::uint64_t offset) {
   std::size_t done = 0;
 #if defined(O_DIRECT)
   constexpr std::size_t page = 4096, worth_it = std::size_t{4} << 20;
-  if (bytes < worth_it || offset % page != 0 || reinterpret_cast<std::uintptr_t>(data) % page != 0) return 0;
+  if (bytes < worth_it || offset % page != 0 || reinterpret_cast<std::uintptr_t>(data) % page != 0)
+    return 0;
   const int flags = ::fcntl(descriptor, F_GETFL);
   if (flags < 0 || ::fcntl(descriptor, F_SETFL, flags | O_DIRECT) != 0) return 0;
   const std::size_t whole = bytes / page * page;
@@ -70,7 +73,8 @@ void sync_folder_of(const std::string& path) {
   const int error = ::fsync(descriptor) == 0 ? 0 : errno;
   ::close(descriptor);
   // Some file systems have nothing to synchronize for a folder.
-  if (error != 0 && error != EINVAL && error != ENOTSUP) throw_io_error(path, "cannot flush the folder to the disk", error);
+  if (error != 0 && error != EINVAL && error != ENOTSUP)
+    throw_io_error(path, "cannot flush the folder to the disk", error);
 }
 
 }  // namespace
@@ -108,7 +112,8 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
   }
   flush_buffer();
   const auto* from = static_cast<const char*>(data);
-  const std::size_t direct = temporary_.empty() ? 0 : write_directly(descriptor_, from, bytes, written_ - bytes);
+  const std::size_t direct =
+      temporary_.empty() ? 0 : write_directly(descriptor_, from, bytes, written_ - bytes);
   const int error = write_fully(descriptor_, from + direct, bytes - direct);
   if (error != 0) fail("cannot write", error);
 }
@@ -123,7 +128,8 @@ void AtomicFile::commit(const std::string& keep_old_as) {
     throw_io_error(path_, "cannot close the file", error);
   }
   if (temporary_.empty()) return;
-  if (!keep_old_as.empty() && std::rename(path_.c_str(), keep_old_as.c_str()) != 0 && errno != ENOENT) {
+  if (!keep_old_as.empty() && std::rename(path_.c_str(), keep_old_as.c_str()) != 0 &&
+      errno != ENOENT) {
     const int error = errno;
     ::unlink(temporary_.c_str());
     throw_io_error(path_, "cannot rename the old file to " + keep_old_as, error);

@@ -31,8 +31,8 @@ class AtomicFile {
   void write(const void* data, std::size_t bytes);
   void write(std::string_view text) { write(text.data(), text.size()); }
 
-  /// Writes what is buffered, flushes it to the disk, closes and renames. A file that is there already
-  /// is renamed to `keep_old_as` before, unless that is empty.
+  /// Writes what is buffered, flushes it to the disk, closes and renames. A file that is there
+  /// already is renamed to `keep_old_as` before, unless that is empty.
   void commit(const std::string& keep_old_as = {});
 
   std::uint64_t bytes_written() const { return written_; }

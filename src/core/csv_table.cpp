@@ -44,10 +44,8 @@ std::vector<std::string> split(std::string_view line, const std::string& place) 
       std::string cell;
       for (++at;; ++at) {
         if (at >= line.size()) throw TableError(place + ": the quote is not closed");
-        if (line[at] == '"' && at + 1 < line.size() && line[at + 1] == '"')
-          ++at;
-        else if (line[at] == '"')
-          break;
+        if (line[at] == '"' && at + 1 < line.size() && line[at + 1] == '"') ++at;
+        else if (line[at] == '"') break;
         cell += line[at];
       }
       const std::size_t comma = std::min(line.find(',', ++at), line.size());

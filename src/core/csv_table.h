@@ -51,8 +51,8 @@ class CsvTable {
   std::vector<int> lines_;                       ///< the line of each row
 };
 
-/// Parses the text of a table of at most 4096 columns; `path` is for the messages. Throws TableError
-/// with file:line.
+/// Parses the text of a table of at most 4096 columns; `path` is for the messages. Throws
+/// TableError with file:line.
 CsvTable parse_csv_table(std::string_view text, const std::string& path,
                          std::size_t max_cells = 20'000'000);
 

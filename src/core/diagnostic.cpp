@@ -64,8 +64,8 @@ std::string heading(const Diagnostic& d, const Colors& c) {
   std::string message = shortened(d.message, longest_message);
   if (!d.path.empty() && message.find(d.path) == std::string::npos)
     message = d.path + ": " + message;
-  return fmt::format("{}{}{}{}[{}]{}: {}\n", c.bold, printable(at), c.strong, severity_name(d.severity), d.id,
-                     c.off, printable(message));
+  return fmt::format("{}{}{}{}[{}]{}: {}\n", c.bold, printable(at), c.strong,
+                     severity_name(d.severity), d.id, c.off, printable(message));
 }
 
 }  // namespace
@@ -131,11 +131,12 @@ std::string Diagnostics::render(bool color) const {
     const std::size_t length = word_length(line, column);
     // Widths are those of what is shown: a blank or '?' for each character that is not.
     const std::size_t before = width_of(printable(line.substr(0, column)));
-    const std::size_t width = std::max<std::size_t>(1, width_of(printable(line.substr(column, length))));
+    const std::size_t width =
+        std::max<std::size_t>(1, width_of(printable(line.substr(column, length))));
     const std::string marks = "^" + std::string(width - 1, '~');
     out += fmt::format("{:>5} | {}\n", d->place.line, printable(line));
-    out += fmt::format("{:>5} | {}{}{}{}{}{}\n", "", std::string(before, ' '), c.strong, marks, c.off,
-                       help.empty() ? "" : " ", help);
+    out += fmt::format("{:>5} | {}{}{}{}{}{}\n", "", std::string(before, ' '), c.strong, marks,
+                       c.off, help.empty() ? "" : " ", help);
   }
   if (errors > most_errors) out += fmt::format("... and {} more errors\n", errors - most_errors);
   return out;

@@ -7,8 +7,9 @@
 
 namespace sphgeo {
 
-/// The unit vector along `a`, also where the square of its length is no number in double precision; zero for zero.
-/// What is a unit vector but for rounding stays as it is, so that a direction is its own direction.
+/// The unit vector along `a`, also where the square of its length is no number in double precision;
+/// zero for zero. What is a unit vector but for rounding stays as it is, so that a direction is its
+/// own direction.
 inline Vec3 direction_of(const Vec3& a) {
   const double largest = a.cwiseAbs().maxCoeff();
   if (!(largest > 0)) return Vec3::Zero();

@@ -10,7 +10,15 @@
 
 namespace sphgeo {
 
-enum class ExitCode { done = 0, internal = 1, usage = 2, unstable = 3, mismatch = 4, io = 5, stopped = 6 };
+enum class ExitCode {
+  done = 0,
+  internal = 1,
+  usage = 2,
+  unstable = 3,
+  mismatch = 4,
+  io = 5,
+  stopped = 6
+};
 
 class Error : public std::runtime_error {
  public:
@@ -24,24 +32,26 @@ class Error : public std::runtime_error {
 /// The deck or the command line is wrong; carries every finding.
 class DeckError : public Error {
  public:
-  explicit DeckError(Diagnostics d) : Error(ExitCode::usage, "the deck has errors"), diagnostics(std::move(d)) {}
+  explicit DeckError(Diagnostics d)
+      : Error(ExitCode::usage, "the deck has errors"), diagnostics(std::move(d)) {}
   Diagnostics diagnostics;
 };
 
 /// A file or the disk failed: the path, what was tried, and the system's own words.
 class IoError : public Error {
  public:
-  IoError(const std::string& path, const std::string& what) : Error(ExitCode::io, path + ": " + what) {}
+  IoError(const std::string& path, const std::string& what)
+      : Error(ExitCode::io, path + ": " + what) {}
 };
 
 /// Where and when a run became unstable.
 struct Instability {
-  std::string cause;             ///< one word: not_finite, speed, density, step, lost, penetration ...
-  std::string effect;            ///< whose result it is, "" when unknown
+  std::string cause;   ///< one word: not_finite, speed, density, step, lost, penetration ...
+  std::string effect;  ///< whose result it is, "" when unknown
   std::string set;
   std::optional<Id> particle;
-  std::optional<Vec3> place;     ///< m
-  std::optional<double> time;    ///< s
+  std::optional<Vec3> place;   ///< m
+  std::optional<double> time;  ///< s
 };
 
 /// The guard stopped the run.

@@ -46,9 +46,10 @@ constexpr std::uint64_t fnv1a(std::string_view text, std::uint64_t state = fnv1a
   return state;
 }
 
-/// Checksum of a large array, several bytes a cycle: FNV-1a over 64-bit words in four streams, turned after each
-/// product: that carries a change only upwards, so that two flipped signs would undo each other at the top. Each
-/// step is a bijection, so any change of a single word changes the result.
+/// Checksum of a large array, several bytes a cycle: FNV-1a over 64-bit words in four streams,
+/// turned after each product: that carries a change only upwards, so that two flipped signs would
+/// undo each other at the top. Each step is a bijection, so any change of a single word changes the
+/// result.
 inline std::uint64_t checksum(const void* data, std::size_t bytes) {
   const auto* p = static_cast<const unsigned char*>(data);
   std::uint64_t stream[4] = {fnv1a_start, fnv1a_start + 1, fnv1a_start + 2, fnv1a_start + 3};

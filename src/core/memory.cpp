@@ -42,9 +42,10 @@ std::uint64_t machine_available() {
   return unlimited;
 }
 
-/// What the control groups from `group` up to the root of `tree` leave. What their caches hold counts
-/// as used, so this is on the safe side.
-std::uint64_t left_in_groups(const std::string& tree, std::string group, const char* limit_file, const char* use_file) {
+/// What the control groups from `group` up to the root of `tree` leave. What their caches hold
+/// counts as used, so this is on the safe side.
+std::uint64_t left_in_groups(const std::string& tree, std::string group, const char* limit_file,
+                             const char* use_file) {
   std::uint64_t left = unlimited;
   for (;;) {
     const std::string folder = tree + group + "/";
@@ -67,9 +68,11 @@ std::uint64_t groups_available() {
     if (group.empty() || group.front() != '/') continue;
     if (group == "/") group.clear();
     if (controllers.empty())
-      left = std::min(left, left_in_groups("/sys/fs/cgroup", group, "memory.max", "memory.current"));
+      left =
+          std::min(left, left_in_groups("/sys/fs/cgroup", group, "memory.max", "memory.current"));
     else if (controllers == "memory")
-      left = std::min(left, left_in_groups("/sys/fs/cgroup/memory", group, "memory.limit_in_bytes", "memory.usage_in_bytes"));
+      left = std::min(left, left_in_groups("/sys/fs/cgroup/memory", group, "memory.limit_in_bytes",
+                                           "memory.usage_in_bytes"));
   }
   return left;
 }

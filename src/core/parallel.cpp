@@ -104,7 +104,8 @@ class Workers {
     }
   };
 
-  static void try_block(void (*call)(const void*, Index), const void* context, Index b, Failure& failure) {
+  static void try_block(void (*call)(const void*, Index), const void* context, Index b,
+                        Failure& failure) {
     try {
       call(context, b);
     } catch (...) {
@@ -168,7 +169,8 @@ void set_threads(int n) { workers().set_count(n); }
 
 int threads() { return workers().count(); }
 
-void detail::run_blocks(Index blocks, void (*call)(const void* context, Index b), const void* context) {
+void detail::run_blocks(Index blocks, void (*call)(const void* context, Index b),
+                        const void* context) {
   workers().run(blocks, call, context);
 }
 

@@ -28,15 +28,16 @@ void run_blocks(Index blocks, void (*call)(const void* context, Index b), const 
 
 }  // namespace detail
 
-/// Calls f(begin, end, block_index) for blocks of `block` items that cover [0, n). Blocks run in any
-/// order and at the same time; f may write only what belongs to its block. A loop inside of f runs in
-/// the thread of f. If blocks throw, all others still run and the exception of the first block (in
-/// block order) is rethrown.
+/// Calls f(begin, end, block_index) for blocks of `block` items that cover [0, n). Blocks run in
+/// any order and at the same time; f may write only what belongs to its block. A loop inside of f
+/// runs in the thread of f. If blocks throw, all others still run and the exception of the first
+/// block (in block order) is rethrown.
 template <class F>
 void parallel_blocks(Index n, int block, F&& f) {
   const auto one = [&](Index b) { f(b * block, std::min<Index>(n, (b + 1) * block), b); };
   detail::run_blocks((n + block - 1) / block,
-                     [](const void* loop, Index b) { (*static_cast<decltype(&one)>(loop))(b); }, &one);
+                     [](const void* loop, Index b) { (*static_cast<decltype(&one)>(loop))(b); },
+                     &one);
 }
 
 /// Calls f(i) for all i in [0, n), in parallel blocks.

@@ -15,9 +15,9 @@ struct StateFileKind {
   std::string noun;  ///< in errors: "checkpoint"
 };
 
-/// Collects the state in an HDF5 file that exists in memory only. HDF5 never writes to the disk itself:
-/// version 1.10.8 crashes at exit after a full disk. Behind the HDF5 data the file carries one line with
-/// its length and checksum.
+/// Collects the state in an HDF5 file that exists in memory only. HDF5 never writes to the disk
+/// itself: version 1.10.8 crashes at exit after a full disk. Behind the HDF5 data the file carries
+/// one line with its length and checksum.
 class StateFileWriter : public StateSink {
  public:
   /// `expected_bytes` is the size of the arrays to come: it saves growing the memory in steps.
@@ -30,9 +30,9 @@ class StateFileWriter : public StateSink {
   void put(const std::string& name, std::span<const std::uint64_t> values) override;
   void put_text(const std::string& name, std::string_view text) override;
 
-  /// Writes the file under a temporary name, flushes it to the disk and renames it; a file that is there
-  /// already is kept as `previous`, unless that is empty. Returns its bytes. To be called once, last.
-  /// Throws IoError; the earlier file is then where it was.
+  /// Writes the file under a temporary name, flushes it to the disk and renames it; a file that is
+  /// there already is kept as `previous`, unless that is empty. Returns its bytes. To be called
+  /// once, last. Throws IoError; the earlier file is then where it was.
   std::uint64_t write(const std::string& path, const std::string& previous);
 
  private:

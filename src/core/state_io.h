@@ -21,8 +21,12 @@ class StateSink {
   virtual void put(const std::string& name, std::span<const std::uint64_t> values) = 0;
   virtual void put_text(const std::string& name, std::string_view text) = 0;
 
-  void put_number(const std::string& name, double value) { put(name, std::span<const double>(&value, 1)); }
-  void put_count(const std::string& name, std::int64_t value) { put(name, std::span<const std::int64_t>(&value, 1)); }
+  void put_number(const std::string& name, double value) {
+    put(name, std::span<const double>(&value, 1));
+  }
+  void put_count(const std::string& name, std::int64_t value) {
+    put(name, std::span<const std::int64_t>(&value, 1));
+  }
 };
 
 /// Gives it back. Every function throws IoError when the name is missing or holds something else.

@@ -17,15 +17,16 @@ std::string folded(std::string_view text) {
   return out;
 }
 
-/// Of a whole UTF-8 character: whether it acts on the terminal in place of being shown. That are C0, DEL, C1 (U+0080
-/// to U+009F), the separators of lines and paragraphs (U+2028, U+2029) and the embeddings, overrides and isolates of
-/// bidirectional text (U+202A to U+202E, U+2066 to U+2069).
+/// Of a whole UTF-8 character: whether it acts on the terminal in place of being shown. That are
+/// C0, DEL, C1 (U+0080 to U+009F), the separators of lines and paragraphs (U+2028, U+2029) and the
+/// embeddings, overrides and isolates of bidirectional text (U+202A to U+202E, U+2066 to U+2069).
 bool is_control(std::string_view character) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(character[k]); };
   if (character.size() == 1) return byte(0) < 0x20 || byte(0) == 0x7f;
   if (character.size() == 2) return byte(0) == 0xc2 && byte(1) < 0xa0;
   if (character.size() != 3 || byte(0) != 0xe2) return false;
-  return (byte(1) == 0x80 && byte(2) >= 0xa8 && byte(2) <= 0xae) || (byte(1) == 0x81 && byte(2) >= 0xa6 && byte(2) <= 0xa9);
+  return (byte(1) == 0x80 && byte(2) >= 0xa8 && byte(2) <= 0xae) ||
+         (byte(1) == 0x81 && byte(2) >= 0xa6 && byte(2) <= 0xa9);
 }
 
 }  // namespace
@@ -59,15 +60,18 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   }
   const int reach = name.size() < 4 ? 1 : 2;
   int best = reach + 1;
-  std::size_t alike = 0;  // characters at the beginning; of names equally near, the one that starts more like it is meant
+  std::size_t alike = 0;  // characters at the beginning; of names equally near, the one that starts
+                          // more like it is meant
   std::string found;
   for (const std::string& c : candidates) {
-    const std::size_t longer = std::max(name.size(), c.size()), shorter = std::min(name.size(), c.size());
+    const std::size_t longer = std::max(name.size(), c.size()),
+                      shorter = std::min(name.size(), c.size());
     if (longer - shorter > static_cast<std::size_t>(reach)) continue;  // that many edits at least
     // A name may not be replaced as a whole: "t" is no misspelling of "x".
     const int d = edit_distance(name, c);
     if (d > best || d > reach || d >= static_cast<int>(longer)) continue;
-    const auto same = static_cast<std::size_t>(std::mismatch(name.begin(), name.end(), c.begin(), c.end()).first - name.begin());
+    const auto same = static_cast<std::size_t>(
+        std::mismatch(name.begin(), name.end(), c.begin(), c.end()).first - name.begin());
     if (d < best || same > alike) {
       best = d;
       alike = same;
@@ -122,14 +126,19 @@ std::size_t invalid_utf8(std::string_view text) {
   const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(text[k]); };
   for (std::size_t k = 0; k < text.size();) {
     const unsigned char lead = byte(k);
-    const std::size_t length = lead < 0x80 ? 1 : lead < 0xc2 ? 0 : lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : lead < 0xf5 ? 4 : 0;
+    const std::size_t length = lead < 0x80   ? 1
+                               : lead < 0xc2 ? 0
+                               : lead < 0xe0 ? 2
+                               : lead < 0xf0 ? 3
+                               : lead < 0xf5 ? 4
+                                             : 0;
     if (length == 0 || k + length > text.size()) return k;
     for (std::size_t j = 1; j < length; ++j)
       if ((byte(k + j) & 0xc0) != 0x80) return k;
     // Longer than needed, a surrogate, or beyond U+10FFFF.
     const unsigned char next = length > 2 ? byte(k + 1) : 0;
-    if ((lead == 0xe0 && next < 0xa0) || (lead == 0xed && next > 0x9f) || (lead == 0xf0 && next < 0x90) ||
-        (lead == 0xf4 && next > 0x8f))
+    if ((lead == 0xe0 && next < 0xa0) || (lead == 0xed && next > 0x9f) ||
+        (lead == 0xf0 && next < 0x90) || (lead == 0xf4 && next > 0x8f))
       return k;
     k += length;
   }

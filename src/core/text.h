@@ -33,9 +33,9 @@ std::string shortened(std::string_view text, std::size_t bytes);
 /// Where the first byte stands that is no part of valid UTF-8 (RFC 3629); npos when all is valid.
 std::size_t invalid_utf8(std::string_view text);
 
-/// What may be sent to a terminal as part of a line: each control character (the end of a line too, unless
-/// it is among `keep`), each character that turns the direction of writing and each byte that is no UTF-8
-/// becomes '?', a tab a blank.
+/// What may be sent to a terminal as part of a line: each control character (the end of a line too,
+/// unless it is among `keep`), each character that turns the direction of writing and each byte
+/// that is no UTF-8 becomes '?', a tab a blank.
 std::string printable(std::string_view text, std::string_view keep = {});
 
 /// Without blanks at both ends.

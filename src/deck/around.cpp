@@ -16,8 +16,10 @@ std::string name_of(const Node& body) {
 
 /// Whether `name` is NAME_1, NAME_2 ...: a copy of NAME.
 bool is_copy(const std::string& name, const std::string& original) {
-  return name.size() > original.size() + 1 && name.starts_with(original) && name[original.size()] == '_' &&
-         std::all_of(name.begin() + static_cast<std::ptrdiff_t>(original.size()) + 1, name.end(), [](char c) { return c >= '0' && c <= '9'; });
+  return name.size() > original.size() + 1 && name.starts_with(original) &&
+         name[original.size()] == '_' &&
+         std::all_of(name.begin() + static_cast<std::ptrdiff_t>(original.size()) + 1, name.end(),
+                     [](char c) { return c >= '0' && c <= '9'; });
 }
 
 /// Shapes of the bodies that go by a name.
@@ -32,7 +34,8 @@ std::vector<Node> shapes_of(const std::vector<Node>& bodies, const std::string& 
   return out;
 }
 
-/// Names to offer to one who has misspelt one: those of all other bodies, and of what they are copies of.
+/// Names to offer to one who has misspelt one: those of all other bodies, and of what they are
+/// copies of.
 std::vector<std::string> candidates(const std::vector<Node>& bodies, const std::string& but) {
   std::vector<std::string> out;
   for (const Node& body : bodies) {
@@ -40,7 +43,8 @@ std::vector<std::string> candidates(const std::vector<Node>& bodies, const std::
     if (name.empty() || name == but) continue;
     out.push_back(name);
     const std::size_t end = name.rfind('_');
-    if (end != std::string::npos && is_copy(name, name.substr(0, end))) out.push_back(name.substr(0, end));
+    if (end != std::string::npos && is_copy(name, name.substr(0, end)))
+      out.push_back(name.substr(0, end));
   }
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
@@ -61,14 +65,20 @@ void expand_around(Node& root, DeckReading& reading) {
     const std::string path = fmt::format("bodies[{}].around", k);
     reading.places[path] = around.place;
     if (around.value.kind != Node::Kind::list) {
-      reading.error("E030", around.value.place, path, fmt::format("{} where names of bodies are expected", around.value.words()), "write around: [boulder]");
+      reading.error("E030", around.value.place, path,
+                    fmt::format("{} where names of bodies are expected", around.value.words()),
+                    "write around: [boulder]");
       continue;
     }
     std::vector<Node> shapes;
     for (const Node& item : around.value.items) {
-      const std::vector<Node> found = item.kind == Node::Kind::scalar && item.text != name_of(body) ? shapes_of(before, item.text) : std::vector<Node>();
+      const std::vector<Node> found = item.kind == Node::Kind::scalar && item.text != name_of(body)
+                                          ? shapes_of(before, item.text)
+                                          : std::vector<Node>();
       if (found.empty())
-        reading.error("E030", item.place, path, fmt::format("there is no other body {}", item.words()), suggestion(item.text, candidates(before, name_of(body)), "other bodies"));
+        reading.error("E030", item.place, path,
+                      fmt::format("there is no other body {}", item.words()),
+                      suggestion(item.text, candidates(before, name_of(body)), "other bodies"));
       shapes.insert(shapes.end(), found.begin(), found.end());
     }
     Entry* shape = body.find("shape");

@@ -12,17 +12,31 @@
 namespace sphgeo {
 
 Schema<Copies> Copies::schema() {
-  Schema<Copies> s("copies", "Many bodies from one: the key `copies` of a body makes bodies NAME_1, NAME_2 ... of it, at random places without overlap. Boulders also differ in their seed.");
+  Schema<Copies> s(
+      "copies",
+      "Many bodies from one: the key `copies` of a body makes bodies NAME_1, NAME_2 ... of it, at "
+      "random places without overlap. Boulders also differ in their seed.");
   s.required("count", &Copies::count, unit::none, "how many").at_least(1).at_most(10000);
-  s.required("region", &Copies::region, unit::none, "the region inside of which they are placed; it must be bounded");
-  s.optional("sizes", &Copies::sizes, unit::none, "least and largest factor on the lengths of the shape; those of the copies are spread evenly between").items(2, 2).above(0);
-  s.optional("seed", &Copies::seed, unit::none, "another seed, other sizes, places and turns").at_least(0);
-  s.optional("gap", &Copies::gap, unit::length, "least distance between two copies; auto: two spacings, so that they do not touch at t = 0").at_least(0);
+  s.required("region", &Copies::region, unit::none,
+             "the region inside of which they are placed; it must be bounded");
+  s.optional("sizes", &Copies::sizes, unit::none,
+             "least and largest factor on the lengths of the shape; those of the copies are spread "
+             "evenly between")
+      .items(2, 2)
+      .above(0);
+  s.optional("seed", &Copies::seed, unit::none, "another seed, other sizes, places and turns")
+      .at_least(0);
+  s.optional(
+       "gap", &Copies::gap, unit::length,
+       "least distance between two copies; auto: two spacings, so that they do not touch at t = 0")
+      .at_least(0);
   s.optional("turned", &Copies::turned, unit::none, "whether each copy is turned at random");
   s.check([](Copies& k, CheckContext& c) {
-    if (k.sizes[0] > k.sizes[1]) c.error("sizes", "the least size is larger than the largest", "write [least, largest]");
+    if (k.sizes[0] > k.sizes[1])
+      c.error("sizes", "the least size is larger than the largest", "write [least, largest]");
     const Aabb box = k.region->box();
-    if (!(box.lo.allFinite() && box.hi.allFinite())) c.error("region", "the region is unbounded", "intersect it with a box");
+    if (!(box.lo.allFinite() && box.hi.allFinite()))
+      c.error("region", "the region is unbounded", "intersect it with a box");
   });
   return s;
 }
@@ -114,7 +128,8 @@ std::vector<Placed> place(const Copies& copies, const Ball& ball, const DeckRead
   Draws draw{static_cast<std::uint64_t>(copies.seed)};
   std::vector<Placed> out(static_cast<std::size_t>(copies.count));
   for (Placed& p : out) p.size = draw.between(copies.sizes[0], copies.sizes[1]);
-  std::stable_sort(out.begin(), out.end(), [](const Placed& a, const Placed& b) { return a.size > b.size; });
+  std::stable_sort(out.begin(), out.end(),
+                   [](const Placed& a, const Placed& b) { return a.size > b.size; });
   const double gap = copies.gap.value_or(2 * reading.resolution);
   const Aabb box = copies.region->box();
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -122,7 +137,9 @@ std::vector<Placed> place(const Copies& copies, const Ball& ball, const DeckRead
     const auto fits = [&](const Vec3& at) {
       if (copies.region->signed_distance(at) > -radius) return false;
       return std::all_of(out.begin(), out.begin() + static_cast<std::ptrdiff_t>(k),
-                         [&](const Placed& o) { return (o.at - at).norm() >= radius + o.size * ball.radius + gap; });
+                         [&](const Placed& o) {
+                           return (o.at - at).norm() >= radius + o.size * ball.radius + gap;
+                         });
     };
     int left = tries;
     do {
@@ -138,7 +155,8 @@ std::vector<Placed> place(const Copies& copies, const Ball& ball, const DeckRead
 }
 
 /// The body of one copy.
-Node copy_of(const Node& body, std::size_t k, const Placed& placed, const Copies& copies, const Ball& ball, int dimension) {
+Node copy_of(const Node& body, std::size_t k, const Placed& placed, const Copies& copies,
+             const Ball& ball, int dimension) {
   Node out = body;
   Entry* name = out.find("name");
   if (name) name->value.text += fmt::format("_{}", k + 1);
@@ -146,7 +164,8 @@ Node copy_of(const Node& body, std::size_t k, const Placed& placed, const Copies
   const Place at = shape.place;
   if (const Entry* type = shape.find("type"); type && type->value.text == "boulder") {
     const Entry* seed = shape.find("seed");
-    put(shape, "seed", text(seed ? fmt::format("({}) + {}", seed->value.text, k) : fmt::format("{}", k + 1), at));
+    put(shape, "seed",
+        text(seed ? fmt::format("({}) + {}", seed->value.text, k) : fmt::format("{}", k + 1), at));
   }
   Node moved = Node::map();
   moved.place = at;
@@ -154,7 +173,8 @@ Node copy_of(const Node& body, std::size_t k, const Placed& placed, const Copies
   put(moved, "of", std::move(shape));
   put(moved, "scale", number(placed.size, at));
   if (copies.turned) {
-    Draws draw{random_bits(static_cast<std::uint64_t>(copies.seed), ~static_cast<std::uint64_t>(k))};
+    Draws draw{
+        random_bits(static_cast<std::uint64_t>(copies.seed), ~static_cast<std::uint64_t>(k))};
     put(moved, "rotate", number(2 * std::numbers::pi * draw(), at));
     put(moved, "axis", vector(dimension == 2 ? Vec3(0, -1, 0) : draw.direction(3), at));
   }
@@ -172,13 +192,16 @@ std::vector<Node> expanded(Node body, const std::string& path, DeckReading& read
   reading.places[at] = entry.place;
   Copies copies;
   Diagnostics found;
-  const bool good = read_ahead(reading, found, reading.places, [&](DeckReading& r) { return read_mapping(entry.value, {{&schema_of<Copies>(), &copies}}, at, r); });
+  const bool good = read_ahead(reading, found, reading.places, [&](DeckReading& r) {
+    return read_mapping(entry.value, {{&schema_of<Copies>(), &copies}}, at, r);
+  });
   for (const Diagnostic& d : found.items()) {
     if (d.severity == Severity::error) reading.error(d.id, d.place, d.path, d.message, d.help);
   }
   if (!good) return {std::move(body)};
   if (const Entry* clamped = body.find("clamped")) {
-    reading.error("E030", clamped->place, path, "copies cannot be clamped", "give clamped bodies one by one");
+    reading.error("E030", clamped->place, path, "copies cannot be clamped",
+                  "give clamped bodies one by one");
     return {std::move(body)};
   }
   // A shape that cannot be read is reported when its turn comes.
@@ -187,21 +210,31 @@ std::vector<Node> expanded(Node body, const std::string& path, DeckReading& read
   std::shared_ptr<const Shape> original;
   Diagnostics unheard;
   Places nowhere;
-  const Key key("shape", value_type<std::shared_ptr<const Shape>>(), unit::none, true, "", [](void* p) { return p; });
-  if (!read_ahead(reading, unheard, nowhere, [&](DeckReading& r) { return key.type().read(shape->value, key, "shape", r, &original); })) return {std::move(body)};
+  const Key key("shape", value_type<std::shared_ptr<const Shape>>(), unit::none, true, "",
+                [](void* p) { return p; });
+  if (!read_ahead(reading, unheard, nowhere, [&](DeckReading& r) {
+        return key.type().read(shape->value, key, "shape", r, &original);
+      }))
+    return {std::move(body)};
   const Ball ball = ball_around(*original, reading.dimension);
   if (!(ball.radius > 0 && std::isfinite(ball.radius))) {
-    reading.error("E030", entry.place, at, "the shape of the copies is unbounded", "copies need a shape of finite size");
+    reading.error("E030", entry.place, at, "the shape of the copies is unbounded",
+                  "copies need a shape of finite size");
     return {std::move(body)};
   }
   const std::vector<Placed> places = place(copies, ball, reading);
   if (places.size() < static_cast<std::size_t>(copies.count)) {
-    reading.error("E030", entry.place, at, fmt::format("only {} of {} copies fit into the region", places.size(), copies.count),
-                  fmt::format("each needs a ball of {} m times its size, and the gap: a larger region, smaller sizes, or fewer copies", exact(ball.radius)));
+    reading.error(
+        "E030", entry.place, at,
+        fmt::format("only {} of {} copies fit into the region", places.size(), copies.count),
+        fmt::format("each needs a ball of {} m times its size, and the gap: a larger region, "
+                    "smaller sizes, or fewer copies",
+                    exact(ball.radius)));
     return {std::move(body)};
   }
   std::vector<Node> out;
-  for (std::size_t k = 0; k < places.size(); ++k) out.push_back(copy_of(body, k, places[k], copies, ball, reading.dimension));
+  for (std::size_t k = 0; k < places.size(); ++k)
+    out.push_back(copy_of(body, k, places[k], copies, ball, reading.dimension));
   return out;
 }
 
@@ -209,7 +242,9 @@ std::vector<Node> expanded(Node body, const std::string& path, DeckReading& read
 
 void expand_copies(Node& root, DeckReading& reading) {
   Entry* bodies = root.find("bodies");
-  if (!bodies || bodies->value.kind != Node::Kind::list || reading.dimension == 0 || !(reading.resolution > 0)) return;
+  if (!bodies || bodies->value.kind != Node::Kind::list || reading.dimension == 0 ||
+      !(reading.resolution > 0))
+    return;
   std::vector<Node> all;
   for (std::size_t k = 0; k < bodies->value.items.size(); ++k) {
     Node& body = bodies->value.items[k];
@@ -217,7 +252,8 @@ void expand_copies(Node& root, DeckReading& reading) {
       all.push_back(std::move(body));
       continue;
     }
-    for (Node& copy : expanded(std::move(body), fmt::format("bodies[{}]", k), reading)) all.push_back(std::move(copy));
+    for (Node& copy : expanded(std::move(body), fmt::format("bodies[{}]", k), reading))
+      all.push_back(std::move(copy));
   }
   bodies->value.items = std::move(all);
 }

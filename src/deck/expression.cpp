@@ -278,14 +278,17 @@ Expression Expression::parse(const std::string& formula, const Variables& variab
   // Only the variables it names: a deck may have thousands of both.
   Variables named;
   for (const Word& w : words)
-    if (const double* value = variables.find(w.text); value != nullptr && named.find(w.text) == nullptr)
+    if (const double* value = variables.find(w.text);
+        value != nullptr && named.find(w.text) == nullptr)
       named.values.emplace_back(w.text, *value);
   const auto program = std::make_shared<Program>(formula, std::move(named), used);
   const double value = (*program)({0.0, 0.0, 0.0, 0.0});  // finds what only muparser can see
   if (used.empty()) {
     if (!std::isfinite(value)) throw FormulaError("the formula has no finite value", {}, 0);
     // As of a number that is written out: near zero it has lost digits.
-    if (value != 0.0 && !std::isnormal(value)) throw FormulaError("the value of the formula is too small for a number in double precision", {}, 0);
+    if (value != 0.0 && !std::isnormal(value))
+      throw FormulaError("the value of the formula is too small for a number in double precision",
+                         {}, 0);
     return Expression(value);
   }
   Expression e;

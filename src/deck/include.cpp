@@ -104,10 +104,11 @@ class Includer {
       return std::nullopt;
     }
     if (open_.size() > deepest || done_.size() >= most_files) {
-      found_.error("E006", file.place, "include",
-                   open_.size() > deepest
-                       ? fmt::format("included files include others more than {} levels deep", deepest)
-                       : fmt::format("the deck includes more than {} files", most_files));
+      found_.error(
+          "E006", file.place, "include",
+          open_.size() > deepest
+              ? fmt::format("included files include others more than {} levels deep", deepest)
+              : fmt::format("the deck includes more than {} files", most_files));
       return std::nullopt;
     }
     done_.push_back(identity);

@@ -21,8 +21,8 @@ struct Shape {
   virtual ~Shape() = default;
   /// Distance to the surface (m), negative inside.
   virtual double signed_distance(const Vec3& at) const = 0;
-  /// Right sign, and no more than the distance: enough to ask "inside or outside". Composed shapes answer faster than
-  /// with the distance itself.
+  /// Right sign, and no more than the distance: enough to ask "inside or outside". Composed shapes
+  /// answer faster than with the distance itself.
   virtual double bound(const Vec3& at) const { return signed_distance(at); }
   /// Whether bound() may be less than the distance.
   virtual bool composed() const { return false; }

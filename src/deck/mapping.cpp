@@ -90,7 +90,9 @@ bool read_mapping(const Node& node, const std::vector<SchemaPart>& parts, const 
     if (node.find(d.key->name()) == nullptr) absent.push_back(d.key->name());
   }
   for (const SchemaPart& part : parts)
-    for (std::vector<std::string>* names : {&absent, &all}) names->insert(names->end(), part.schema->taken_before().begin(), part.schema->taken_before().end());
+    for (std::vector<std::string>* names : {&absent, &all})
+      names->insert(names->end(), part.schema->taken_before().begin(),
+                    part.schema->taken_before().end());
   std::vector<std::string> meant;
   for (const Entry* entry : unknown) {
     std::string near = nearest_name(entry->key, absent);

@@ -6,14 +6,19 @@
 namespace sphgeo {
 
 Schema<ClampedRegion> ClampedRegion::schema() {
-  Schema<ClampedRegion> s("clamped region", "A part of a solid body that rests, or moves as prescribed.");
-  s.required("shape", &ClampedRegion::shape, unit::none, "the region; what of the body is inside of it at t = 0 is clamped");
-  s.optional("motion", &ClampedRegion::motion, unit::none, "prescribed motion; without one the region rests");
+  Schema<ClampedRegion> s("clamped region",
+                          "A part of a solid body that rests, or moves as prescribed.");
+  s.required("shape", &ClampedRegion::shape, unit::none,
+             "the region; what of the body is inside of it at t = 0 is clamped");
+  s.optional("motion", &ClampedRegion::motion, unit::none,
+             "prescribed motion; without one the region rests");
   return s;
 }
 
 Schema<Body> Body::schema() {
-  Schema<Body> s("body", "A region filled with particles of one material at t = 0; with `copies`, many of them.");
+  Schema<Body> s(
+      "body",
+      "A region filled with particles of one material at t = 0; with `copies`, many of them.");
   s.taken_before("copies");
   s.taken_before("around");
   s.required("name", &Body::name, unit::none, "the name of its particles and files");
@@ -25,28 +30,34 @@ Schema<Body> Body::schema() {
   s.optional("velocity", &Body::velocity, unit::speed, "initial velocity, formulas of x, y, z")
       .only_of("xyz");
   s.optional("pressure", &Body::pressure, unit::pressure,
-             "initial pressure: zero, hydrostatic below 'level', hydraulic_head: that of the 'head', or a formula "
+             "initial pressure: zero, hydrostatic below 'level', hydraulic_head: that of the "
+             "'head', or a formula "
              "of x, y, z")
       .choices({"zero", "hydrostatic", "hydraulic_head"})
       .only_of("xyz");
   s.optional("head", &Body::head, unit::length,
-             "hydraulic head for pressure: hydraulic_head, the z to which the water would rise, a formula of x, y, z")
+             "hydraulic head for pressure: hydraulic_head, the z to which the water would rise, a "
+             "formula of x, y, z")
       .only_of("xyz");
   s.optional("level", &Body::level, unit::length,
              "z of the free surface for hydrostatic pressure; auto: the top of the body");
-  s.optional("stress", &Body::stress, unit::none,
-             "initial stress of soil: zero, or geostatic: the weight of what lies above, up to 'level'")
+  s.optional(
+       "stress", &Body::stress, unit::none,
+       "initial stress of soil: zero, or geostatic: the weight of what lies above, up to 'level'")
       .choices({"zero", "geostatic"});
-  s.optional("stress_tensor", &Body::stress_tensor, unit::pressure,
-             "initial stress of soil, formulas of x, y, z: xx, yy, zz, xy, yz, xz; tension is positive")
+  s.optional(
+       "stress_tensor", &Body::stress_tensor, unit::pressure,
+       "initial stress of soil, formulas of x, y, z: xx, yy, zz, xy, yz, xz; tension is positive")
       .items(6, 6)
       .only_of("xyz");
-  s.optional("lateral_stress_ratio", &Body::lateral_stress_ratio, unit::none,
-             "horizontal over vertical geostatic stress, K0; auto: 1 - sin phi, or nu / (1 - nu) of an "
-             "elastic soil")
+  s.optional(
+       "lateral_stress_ratio", &Body::lateral_stress_ratio, unit::none,
+       "horizontal over vertical geostatic stress, K0; auto: 1 - sin phi, or nu / (1 - nu) of an "
+       "elastic soil")
       .at_least(0);
-  s.optional("volume_fraction", &Body::volume_fraction, unit::none,
-             "initial volume fraction of soil, a number or a formula of x, y, z; auto: the material's")
+  s.optional(
+       "volume_fraction", &Body::volume_fraction, unit::none,
+       "initial volume fraction of soil, a number or a formula of x, y, z; auto: the material's")
       .only_of("xyz")
       .equation("Eq. 1");
   s.optional("porosity", &Body::porosity, unit::none,
@@ -58,25 +69,36 @@ Schema<Body> Body::schema() {
       .only_of("xyz")
       .equation("Eq. 108");
   s.optional("spacing", &Body::spacing, unit::length,
-             "particle spacing of a solid, where it differs from the deck's resolution; auto: the resolution")
+             "particle spacing of a solid, where it differs from the deck's resolution; auto: the "
+             "resolution")
       .above(0)
       .equation("section 3.5");
-  s.optional("clamped", &Body::clamped, unit::none, "parts of an elastic solid that rest or move as prescribed").items(0, 1000);
-  s.optional("self_contact", &Body::self_contact, unit::none, "whether an elastic solid may fold so far that it touches itself").equation("Eq. 78");
+  s.optional("clamped", &Body::clamped, unit::none,
+             "parts of an elastic solid that rest or move as prescribed")
+      .items(0, 1000);
+  s.optional("self_contact", &Body::self_contact, unit::none,
+             "whether an elastic solid may fold so far that it touches itself")
+      .equation("Eq. 78");
   s.check([](Body& b, CheckContext& c) {
     if (b.level && b.pressure.word != "hydrostatic" && b.stress != "geostatic") {
       c.error("level", "'level' has no meaning unless pressure is hydrostatic",
-              "set pressure: hydrostatic (of water) or stress: geostatic (of soil), or leave 'level' out");
+              "set pressure: hydrostatic (of water) or stress: geostatic (of soil), or leave "
+              "'level' out");
     }
     if (b.head.has_value() != (b.pressure.word == "hydraulic_head"))
-      c.error("head", b.head ? "'head' has no meaning unless pressure is hydraulic_head" : "pressure: hydraulic_head needs a 'head'",
+      c.error("head",
+              b.head ? "'head' has no meaning unless pressure is hydraulic_head"
+                     : "pressure: hydraulic_head needs a 'head'",
               "give both, as in 'pressure: hydraulic_head' and 'head: 1.5 m', or none of them");
     if (b.stress_tensor && b.stress != "zero")
-      c.error("stress_tensor", "the initial stress is given twice", "give stress or stress_tensor, not both");
+      c.error("stress_tensor", "the initial stress is given twice",
+              "give stress or stress_tensor, not both");
     if (b.lateral_stress_ratio && b.stress != "geostatic")
-      c.error("lateral_stress_ratio", "'lateral_stress_ratio' has no meaning unless stress is geostatic");
+      c.error("lateral_stress_ratio",
+              "'lateral_stress_ratio' has no meaning unless stress is geostatic");
     if (b.volume_fraction && b.porosity)
-      c.error("porosity", "the volume fraction is given twice", "give volume_fraction or porosity, not both");
+      c.error("porosity", "the volume fraction is given twice",
+              "give volume_fraction or porosity, not both");
   });
   return s;
 }
@@ -98,16 +120,19 @@ Schema<Numerics> Numerics::schema() {
              "advection step as a fraction of h / |v|max")
       .above(0)
       .at_most(1);
-  s.optional("time_step_factor", &Numerics::time_step_factor, unit::none,
-             "factor on all time steps, of every phase: what a result owes to the steps shows at 0.5")
+  s.optional(
+       "time_step_factor", &Numerics::time_step_factor, unit::none,
+       "factor on all time steps, of every phase: what a result owes to the steps shows at 0.5")
       .above(0)
       .at_most(1);
   s.optional("lattice_jitter", &Numerics::lattice_jitter, unit::none,
-             "largest random move of each coordinate of a particle from its lattice point at t = 0, in spacings; bodies of water that "
+             "largest random move of each coordinate of a particle from its lattice point at t = "
+             "0, in spacings; bodies of water that "
              "the pores of soil touch are relaxed and not moved")
       .at_least(0)
       .at_most(0.4);
-  s.optional("lattice_seed", &Numerics::lattice_seed, unit::none, "another seed, another jitter").at_least(0);
+  s.optional("lattice_seed", &Numerics::lattice_seed, unit::none, "another seed, another jitter")
+      .at_least(0);
   s.optional("advection_ratio_max", &Numerics::advection_ratio_max, unit::none,
              "largest advection step, in acoustic steps of a fluid at rest")
       .at_least(1);
@@ -121,17 +146,21 @@ Schema<Numerics> Numerics::schema() {
       .at_most(1)
       .equation("Eq. 87");
   s.optional("density_reinitialization", &Numerics::density_reinitialization, unit::none,
-             "summation: density from the sum over neighbors at each advection step; shepard: density smoothed by a "
+             "summation: density from the sum over neighbors at each advection step; shepard: "
+             "density smoothed by a "
              "first-order consistent filter at each advection step; none: never")
       .choices({"summation", "shepard", "none"});
   s.optional("pore_water", &Numerics::pore_water, unit::none,
-             "water in soil: equal_mass: particles of one mass, whose volume follows the porosity; variable_mass: as well, but at t = 0 "
-             "particles of one volume, whose mass follows the porosity (Zhu et al.); constant_volume: volume and mass ignore the "
+             "water in soil: equal_mass: particles of one mass, whose volume follows the porosity; "
+             "variable_mass: as well, but at t = 0 "
+             "particles of one volume, whose mass follows the porosity (Zhu et al.); "
+             "constant_volume: volume and mass ignore the "
              "porosity (Bui et al.)")
       .choices({"equal_mass", "variable_mass", "constant_volume"})
       .equation("Eq. 27");
   s.optional("water_fraction_floor", &Numerics::water_fraction_floor, unit::none,
-             "least share of the volume that is left to water where soil is dense; particles that meet it are counted")
+             "least share of the volume that is left to water where soil is dense; particles that "
+             "meet it are counted")
       .above(0)
       .below(1)
       .equation("Eq. 56");
@@ -141,8 +170,9 @@ Schema<Numerics> Numerics::schema() {
   s.optional("transport_projection", &Numerics::transport_projection, unit::none,
              "whether the shift leaves out its part along a steep gradient of porosity")
       .equation("Eq. 89");
-  s.optional("transport_projection_threshold", &Numerics::transport_projection_threshold, unit::none,
-             "gradient of the water fraction, per smoothing length, from which on the projection acts")
+  s.optional(
+       "transport_projection_threshold", &Numerics::transport_projection_threshold, unit::none,
+       "gradient of the water fraction, per smoothing length, from which on the projection acts")
       .above(0)
       .equation("Eq. 89");
   s.optional("transport_velocity", &Numerics::transport_velocity, unit::none,
@@ -160,38 +190,49 @@ Schema<Numerics> Numerics::schema() {
              "smoothing length of soil in spacings; auto: 1.3")
       .at_least(1)
       .at_most(3);
-  s.optional("limiter_soil", &Numerics::limiter_soil, unit::none,
-             "factor of the low-dissipation limiter of soil's Riemann flux; auto: 20 times the dimension")
+  s.optional(
+       "limiter_soil", &Numerics::limiter_soil, unit::none,
+       "factor of the low-dissipation limiter of soil's Riemann flux; auto: 20 times the dimension")
       .at_least(0)
       .equation("Eq. 54");
-  s.optional("soil_pair_geometry", &Numerics::soil_pair_geometry, unit::none,
-             "positions used in pair sums of soil within an advection step; frozen ones let a turning "
-             "body shrink, which a stress that follows from rates never forgets")
+  s.optional(
+       "soil_pair_geometry", &Numerics::soil_pair_geometry, unit::none,
+       "positions used in pair sums of soil within an advection step; frozen ones let a turning "
+       "body shrink, which a stress that follows from rates never forgets")
       .choices({"frozen", "current"});
   s.optional("soil_velocity_gradient", &Numerics::soil_velocity_gradient, unit::none,
              "corrected: exact for linear velocities also at surfaces; plain: the bare sum")
       .choices({"corrected", "plain"})
       .equation("Eq. 55");
-  s.optional("volume_fraction_reinitialization", &Numerics::volume_fraction_reinitialization, unit::none,
-             "summation: volume fraction of soil from the sum over neighbors at each advection step; none: "
+  s.optional("volume_fraction_reinitialization", &Numerics::volume_fraction_reinitialization,
+             unit::none,
+             "summation: volume fraction of soil from the sum over neighbors at each advection "
+             "step; none: "
              "never")
       .choices({"summation", "none"});
-  s.optional("transport_velocity_soil", &Numerics::transport_velocity_soil, unit::none,
-             "whether inner soil particles are shifted to an even spacing: for cohesive soil, against "
-             "tensile instability")
+  s.optional(
+       "transport_velocity_soil", &Numerics::transport_velocity_soil, unit::none,
+       "whether inner soil particles are shifted to an even spacing: for cohesive soil, against "
+       "tensile instability")
       .equation("Eq. 87");
-  s.optional("h_factor_solid", &Numerics::h_factor_solid, unit::none, "smoothing length of solids over their particle spacing; auto: 1.15")
+  s.optional("h_factor_solid", &Numerics::h_factor_solid, unit::none,
+             "smoothing length of solids over their particle spacing; auto: 1.15")
       .at_least(0.8)
       .at_most(3)
       .equation("below Eq. 102");
   s.optional("solid_gradient", &Numerics::solid_gradient, unit::none,
-             "fields whose gradient solids see exactly: linear, as Eq. 66 has it, or quadratic also near surfaces, which bends plates of few layers as stiffly as thick ones")
+             "fields whose gradient solids see exactly: linear, as Eq. 66 has it, or quadratic "
+             "also near surfaces, which bends plates of few layers as stiffly as thick ones")
       .choices({"linear", "quadratic"})
       .equation("Eq. 66");
-  s.optional("cfl_solid", &Numerics::cfl_solid, unit::none, "CFL number of the time step of solids").above(0).at_most(1).equation("Eq. 94");
-  s.optional("max_lost_fraction", &Numerics::max_lost_fraction, unit::none,
-             "the run stops when more than this fraction of a set has left the domain or sits inside a "
-             "wall")
+  s.optional("cfl_solid", &Numerics::cfl_solid, unit::none, "CFL number of the time step of solids")
+      .above(0)
+      .at_most(1)
+      .equation("Eq. 94");
+  s.optional(
+       "max_lost_fraction", &Numerics::max_lost_fraction, unit::none,
+       "the run stops when more than this fraction of a set has left the domain or sits inside a "
+       "wall")
       .at_least(0)
       .at_most(1)
       .changeable_on_resume();
@@ -225,18 +266,22 @@ Schema<Relaxation> Relaxation::schema() {
       .at_least(0)
       .at_most(100000)
       .equation("Eq. 85");
-  s.optional("seed", &Relaxation::seed, unit::none, "of the draws that accept candidates: another seed, another start")
+  s.optional("seed", &Relaxation::seed, unit::none,
+             "of the draws that accept candidates: another seed, another start")
       .at_least(0);
-  s.optional("tolerance", &Relaxation::tolerance, unit::none,
-             "mean movement of a step, over the target spacing, below which the relaxation ends early")
+  s.optional(
+       "tolerance", &Relaxation::tolerance, unit::none,
+       "mean movement of a step, over the target spacing, below which the relaxation ends early")
       .at_least(0)
       .below(0.1);
-  s.optional("acceptance", &Relaxation::acceptance, unit::none,
-             "stratified: every part of the pores gets its own share of particles; independent: each "
-             "candidate by its own draw, and only the total is right")
+  s.optional(
+       "acceptance", &Relaxation::acceptance, unit::none,
+       "stratified: every part of the pores gets its own share of particles; independent: each "
+       "candidate by its own draw, and only the total is right")
       .choices({"stratified", "independent"});
-  s.optional("file", &Relaxation::file, unit::none,
-             "relaxed.h5 of 'sphgeo relax', to be used again; auto: relaxed when the scene is built")
+  s.optional(
+       "file", &Relaxation::file, unit::none,
+       "relaxed.h5 of 'sphgeo relax', to be used again; auto: relaxed when the scene is built")
       .changeable_on_resume();
   return s;
 }
@@ -294,7 +339,8 @@ Schema<Expect> Expect::schema() {
   s.optional("at", &Expect::at, unit::time, "the time of the value, for reduce: at").at_least(0);
   s.optional("from", &Expect::from, unit::time, "start of the time window; auto: the first sample");
   s.optional("to", &Expect::to, unit::time, "end of the time window; auto: the last sample");
-  s.optional("shift", &Expect::shift, unit::none, "added to the measured numbers, before the scale");
+  s.optional("shift", &Expect::shift, unit::none,
+             "added to the measured numbers, before the scale");
   s.optional("scale", &Expect::scale, unit::none, "the measured numbers are divided by it");
   s.optional("reference", &Expect::reference, unit::none, "the number that should come out");
   s.optional("reference_csv", &Expect::reference_csv, unit::none,
@@ -305,7 +351,9 @@ Schema<Expect> Expect::schema() {
   s.optional("x_shift", &Expect::x_shift, unit::none,
              "added to the scaled abscissae, for a table whose clock started at another moment");
   s.optional("y_scale", &Expect::y_scale, unit::none, "the table's ordinates are multiplied by it");
-  s.optional("norm", &Expect::norm, unit::none, "of the difference of two curves: l2 and max by the range of the reference, relative_l2 by its root mean square")
+  s.optional("norm", &Expect::norm, unit::none,
+             "of the difference of two curves: l2 and max by the range of the reference, "
+             "relative_l2 by its root mean square")
       .choices({"l2", "max", "relative_l2"});
   s.required("tolerance", &Expect::tolerance, unit::none,
              "largest error; for measure below or above: the bound itself");
@@ -344,13 +392,6 @@ Schema<Expect> Expect::schema() {
     if (e.from && e.to && *e.from >= *e.to) c.error("to", "'to' must be later than 'from'");
   });
   return s;
-}
-
-const MaterialSpec* Model::material(const std::string& material_name) const {
-  for (const auto& m : materials) {
-    if (m->name == material_name) return m.get();
-  }
-  return nullptr;
 }
 
 }  // namespace sphgeo

@@ -60,7 +60,8 @@ void check_references(const Model& m, CheckContext& c) {
   for (std::size_t k = 0; k < m.probes.size(); ++k) {
     probes.push_back(m.probes[k]->name);
     if (m.probes[k]->name == relaxation_probe)
-      c.error(fmt::format("probes[{}].name", k), fmt::format("a probe cannot be called '{}'", relaxation_probe),
+      c.error(fmt::format("probes[{}].name", k),
+              fmt::format("a probe cannot be called '{}'", relaxation_probe),
               "that is what 'expect' calls the history of the relaxation", "E024");
   }
   for (std::size_t k = 0; k < m.bodies.size(); ++k) {
@@ -117,8 +118,7 @@ Schema<Model> Model::schema() {
   s.optional("include", &Model::include, unit::none,
              "deck files whose sections are merged into this one, relative to this file")
       .changeable_on_resume();
-  s.required("materials", &Model::materials, unit::none, "what bodies are made of")
-      .items(1, 1000);
+  s.required("materials", &Model::materials, unit::none, "what bodies are made of").items(1, 1000);
   s.optional("bodies", &Model::bodies, unit::none, "regions filled with particles").items(0, 10000);
   s.optional("boundaries", &Model::boundaries, unit::none, "walls and other borders of the scene")
       .items(0, 1000);
@@ -126,7 +126,9 @@ Schema<Model> Model::schema() {
       .items(0, 10000);
   s.optional("output", &Model::output, unit::none, "frames and tables").changeable_on_resume();
   s.optional("numerics", &Model::numerics, unit::none, "choices of the numerical method");
-  s.optional("without", &Model::without, unit::none, "effects that are switched off, to see what they do; 'sphgeo show EFFECT' tells which can be");
+  s.optional("without", &Model::without, unit::none,
+             "effects that are switched off, to see what they do; 'sphgeo show EFFECT' tells which "
+             "can be");
   s.optional("relaxation", &Model::relaxation, unit::none,
              "how water is distributed that starts in the pores of soil");
   s.optional("expect", &Model::expect, unit::none, "results the deck claims")
@@ -167,8 +169,12 @@ namespace {
 
 void flatten(const Node& node, const std::string& path, std::map<std::string, std::string>& out) {
   switch (node.kind) {
-    case Node::Kind::null: out[path] = "nothing"; break;
-    case Node::Kind::scalar: out[path] = node.text; break;
+    case Node::Kind::null:
+      out[path] = "nothing";
+      break;
+    case Node::Kind::scalar:
+      out[path] = node.text;
+      break;
     case Node::Kind::list:
       for (std::size_t k = 0; k < node.items.size(); ++k)
         flatten(node.items[k], fmt::format("{}[{}]", path, k), out);
@@ -198,7 +204,8 @@ std::vector<std::string> differing_keys(const std::string& there, const std::str
     for (const auto& [path, text] : side) paths.insert(path);
   for (const std::string& path : paths)
     if (value(values[0], path) != value(values[1], path))
-      out.push_back(fmt::format("{}: {} there, {} here", path, value(values[0], path), value(values[1], path)));
+      out.push_back(fmt::format("{}: {} there, {} here", path, value(values[0], path),
+                                value(values[1], path)));
   return out;
 }
 
@@ -214,7 +221,8 @@ Json json_schema() {
   Json& many = out["properties"]["bodies"]["items"]["properties"]["copies"];
   json_mapping(many, {{&schema_of<Copies>(), &copies}}, definitions);
   many["description"] = schema_of<Copies>().sentence();
-  out["properties"]["bodies"]["items"]["properties"]["around"] = {{"type", "array"}, {"items", {{"type", "string"}}}, {"description", around_sentence}};
+  out["properties"]["bodies"]["items"]["properties"]["around"] = {
+      {"type", "array"}, {"items", {{"type", "string"}}}, {"description", around_sentence}};
   out["definitions"] = std::move(definitions);
   return out;
 }

@@ -14,7 +14,8 @@ namespace {
 // smooth formula keeps eight digits.
 constexpr double difference_step = 1e-4;
 
-// Cubic Hermite interpolation with finite-difference slopes: a table then has a continuous velocity.
+// Cubic Hermite interpolation with finite-difference slopes: a table then has a continuous
+// velocity.
 double interpolate(const std::vector<double>& t, const std::vector<double>& y, double at) {
   if (at <= t.front()) return y.front();
   if (at >= t.back()) return y.back();
@@ -25,8 +26,8 @@ double interpolate(const std::vector<double>& t, const std::vector<double>& y, d
   };
   const double dt = t[k + 1] - t[k], s = (at - t[k]) / dt;
   const double s2 = s * s, s3 = s2 * s;
-  return (2 * s3 - 3 * s2 + 1) * y[k] + (s3 - 2 * s2 + s) * dt * slope(k) + (3 * s2 - 2 * s3) * y[k + 1] +
-         (s3 - s2) * dt * slope(k + 1);
+  return (2 * s3 - 3 * s2 + 1) * y[k] + (s3 - 2 * s2 + s) * dt * slope(k) +
+         (3 * s2 - 2 * s3) * y[k + 1] + (s3 - s2) * dt * slope(k + 1);
 }
 
 }  // namespace
@@ -35,22 +36,29 @@ Schema<Motion> Motion::schema() {
   Schema<Motion> s("motion", "prescribed rigid motion of a boundary or of a clamped region");
   s.optional("displacement", &Motion::displacement, unit::length, "displacement as formulas of t");
   s.optional("angle", &Motion::angle, unit::angle, "rotation angle as a formula of t");
-  s.optional("axis", &Motion::axis, unit::none, "axis of the rotation; y turns the x-z plane").keep_y();
+  s.optional("axis", &Motion::axis, unit::none, "axis of the rotation; y turns the x-z plane")
+      .keep_y();
   s.optional("center", &Motion::center, unit::length, "a point on the axis of the rotation");
-  s.optional("table", &Motion::table, unit::none, "CSV file with a column t and any of x, y, z, angle (SI), added to the formulas");
-  s.optional("waves", &Motion::waves, unit::none, "a piston that makes waves, from its start on; added to the formulas");
+  s.optional("table", &Motion::table, unit::none,
+             "CSV file with a column t and any of x, y, z, angle (SI), added to the formulas");
+  s.optional("waves", &Motion::waves, unit::none,
+             "a piston that makes waves, from its start on; added to the formulas");
   s.optional("from", &Motion::from, unit::time, "it rests before this time");
   s.optional("until", &Motion::until, unit::time, "it rests after this time");
   s.check([](Motion& m, CheckContext& c) {
     m.axis = direction_of(m.axis);
-    if (m.axis.isZero(0)) c.error("axis", "the axis has no direction", "give a vector that is not zero");
-    if (m.until && !(*m.until > m.from)) c.error("until", "the motion ends before it begins", "until must be later than from");
+    if (m.axis.isZero(0))
+      c.error("axis", "the axis has no direction", "give a vector that is not zero");
+    if (m.until && !(*m.until > m.from))
+      c.error("until", "the motion ends before it begins", "until must be later than from");
     if (!m.table) return;
     try {
       const CsvTable rows = read_csv_table(m.table->path);
       m.times_ = rows.numbers("t");
-      if (m.times_.size() < 2 || !std::is_sorted(m.times_.begin(), m.times_.end(), std::less_equal<>()))
-        return c.error("table", "the times of the table must rise", "at least two rows, each later than the one before");
+      if (m.times_.size() < 2 ||
+          !std::is_sorted(m.times_.begin(), m.times_.end(), std::less_equal<>()))
+        return c.error("table", "the times of the table must rise",
+                       "at least two rows, each later than the one before");
       const char* names[] = {"x", "y", "z", "angle"};
       for (std::size_t k = 0; k < 4; ++k)
         if (rows.has(names[k])) m.columns_[k] = rows.numbers(names[k]);
@@ -61,14 +69,13 @@ Schema<Motion> Motion::schema() {
   return s;
 }
 
-double Motion::clamp(double t) const {
-  return std::max(from, until ? std::min(t, *until) : t);
-}
+double Motion::clamp(double t) const { return std::max(from, until ? std::min(t, *until) : t); }
 
 Motion::Pose Motion::pose(double t) const {
   const double at = clamp(t);
   const Vec3 nowhere = Vec3::Zero();
-  Pose p{{displacement[0](nowhere, at), displacement[1](nowhere, at), displacement[2](nowhere, at)}, angle(nowhere, at)};
+  Pose p{{displacement[0](nowhere, at), displacement[1](nowhere, at), displacement[2](nowhere, at)},
+         angle(nowhere, at)};
   for (int k = 0; k < 3; ++k)
     if (!columns_[static_cast<std::size_t>(k)].empty())
       p.shift[k] += interpolate(times_, columns_[static_cast<std::size_t>(k)], at);
@@ -87,23 +94,33 @@ Vec3 Motion::turned(const Vec3& reference, const Pose& p) const {
 }
 
 Motion::Moment::Moment(const Motion& motion, double middle, double end)
-    : motion_(motion), moves_(motion.moves_at(middle)), end_(motion.pose(end)), before_(motion.pose(middle - difference_step)),
-      middle_(motion.pose(middle)), after_(motion.pose(middle + difference_step)) {}
+    : motion_(motion),
+      moves_(motion.moves_at(middle)),
+      end_(motion.pose(end)),
+      before_(motion.pose(middle - difference_step)),
+      middle_(motion.pose(middle)),
+      after_(motion.pose(middle + difference_step)) {}
 
 Vec3 Motion::Moment::velocity(const Vec3& reference) const {
   if (!moves_) return Vec3::Zero();
-  return (motion_.placed(reference, after_) - motion_.placed(reference, before_)) / (2 * difference_step);
+  return (motion_.placed(reference, after_) - motion_.placed(reference, before_)) /
+         (2 * difference_step);
 }
 
 Vec3 Motion::Moment::acceleration(const Vec3& reference) const {
   if (!moves_) return Vec3::Zero();
-  return (motion_.placed(reference, after_) - 2 * motion_.placed(reference, middle_) + motion_.placed(reference, before_)) /
+  return (motion_.placed(reference, after_) - 2 * motion_.placed(reference, middle_) +
+          motion_.placed(reference, before_)) /
          (difference_step * difference_step);
 }
 
 Vec3 Motion::position(const Vec3& reference, double t) const { return placed(reference, pose(t)); }
-Vec3 Motion::velocity(const Vec3& reference, double t) const { return Moment(*this, t, t).velocity(reference); }
-Vec3 Motion::acceleration(const Vec3& reference, double t) const { return Moment(*this, t, t).acceleration(reference); }
+Vec3 Motion::velocity(const Vec3& reference, double t) const {
+  return Moment(*this, t, t).velocity(reference);
+}
+Vec3 Motion::acceleration(const Vec3& reference, double t) const {
+  return Moment(*this, t, t).acceleration(reference);
+}
 Vec3 Motion::direction(const Vec3& reference, double t) const { return turned(reference, pose(t)); }
 
 double Motion::max_speed(const Vec3& reference, double end) const {

@@ -14,13 +14,14 @@ namespace sphgeo {
 /// A rigid motion x(t) = c + R(angle(t)) (X - c) + d(t), from a start time on, frozen after an end.
 struct Motion {
   std::array<Expression, 3> displacement;  ///< d(t), m
-  Expression angle{0.0};                    ///< rotation angle, rad
-  Vec3 axis = Vec3(0, 1, 0);                ///< axis of the rotation; y turns the x-z plane
-  Vec3 center = Vec3::Zero();               ///< a point on the axis, m
-  std::optional<FilePath> table;            ///< CSV with columns t and any of x, y, z, angle; added to the formulas
-  std::optional<Waves> waves;               ///< of a wave maker; added to the formulas
-  double from = 0.0;                        ///< it rests before, s
-  std::optional<double> until;              ///< and after, s
+  Expression angle{0.0};                   ///< rotation angle, rad
+  Vec3 axis = Vec3(0, 1, 0);               ///< axis of the rotation; y turns the x-z plane
+  Vec3 center = Vec3::Zero();              ///< a point on the axis, m
+  std::optional<FilePath>
+      table;  ///< CSV with columns t and any of x, y, z, angle; added to the formulas
+  std::optional<Waves> waves;   ///< of a wave maker; added to the formulas
+  double from = 0.0;            ///< it rests before, s
+  std::optional<double> until;  ///< and after, s
 
   static Schema<Motion> schema();
 
@@ -29,8 +30,9 @@ struct Motion {
     Vec3 shift;
     double angle;
   };
-  /// The motion over a time step: place and direction at its end, velocity and acceleration at its middle, as the four
-  /// functions below give them. For many points at once: formulas, tables and waves are asked once.
+  /// The motion over a time step: place and direction at its end, velocity and acceleration at its
+  /// middle, as the four functions below give them. For many points at once: formulas, tables and
+  /// waves are asked once.
   class Moment {
    public:
     Moment(const Motion& motion, double middle, double end);
@@ -61,8 +63,8 @@ struct Motion {
   double clamp(double t) const;
   bool moves_at(double t) const { return t > from && (!until || t < *until); }
 
-  std::vector<double> times_;                  // of the table
-  std::array<std::vector<double>, 4> columns_; // x, y, z, angle
+  std::vector<double> times_;                   // of the table
+  std::array<std::vector<double>, 4> columns_;  // x, y, z, angle
 };
 
 }  // namespace sphgeo

@@ -77,7 +77,8 @@ Model read(const DeckText& deck, const std::vector<std::string>& overrides) {
   if (const Entry* variables = find_variables(*root)) read_variables(variables->value, reading);
   reading.resolution = number_ahead(*root, "resolution", reading);
   // A resolution that cannot be read is an error of its own: NaN keeps formulas that use it silent.
-  reading.variables.values.emplace_back("resolution", reading.resolution > 0 ? reading.resolution : std::nan(""));
+  reading.variables.values.emplace_back("resolution",
+                                        reading.resolution > 0 ? reading.resolution : std::nan(""));
   expand_copies(*root, reading);
   expand_around(*root, reading);
   read_mapping(*root, {{&schema_of<Model>(), &model}}, {}, reading);

@@ -109,10 +109,8 @@ std::optional<UnitText> parse_unit(std::string_view text) {
       negative = true;
       ++k;
     }
-    if (k < text.size() && is_digit(text[k]))
-      power = text[k++] - '0';
-    else if (k > end)
-      return std::nullopt;  // "^" without a power
+    if (k < text.size() && is_digit(text[k])) power = text[k++] - '0';
+    else if (k > end) return std::nullopt;  // "^" without a power
     if (negative) power = -power;
     if (divide) power = -power;
     const double inverse = std::round(1.0 / symbol->factor);

@@ -17,23 +17,44 @@ Schema<Waves> Waves::schema() {
   s.required("depth", &Waves::depth, unit::length, "of the water at rest").above(0);
   s.optional("gravity", &Waves::gravity, unit::acceleration, "that the waves run under").above(0);
   s.optional("direction", &Waves::direction, unit::none, "that the waves run in, of any length");
-  s.optional("order", &Waves::order, unit::none, "of the theory: 1 linear, for low waves; 2 adds what a higher wave needs to keep its shape (Madsen 1971)").at_least(1).at_most(2);
-  s.optional("ramp", &Waves::ramp, unit::time, "time in which the stroke grows from zero; auto: two periods").at_least(0);
-  s.optional("absorb", &Waves::absorb, unit::none, "whether the piston moves so that it takes up waves that come back to it, by the level of the water before it");
+  s.optional("order", &Waves::order, unit::none,
+             "of the theory: 1 linear, for low waves; 2 adds what a higher wave needs to keep its "
+             "shape (Madsen 1971)")
+      .at_least(1)
+      .at_most(2);
+  s.optional("ramp", &Waves::ramp, unit::time,
+             "time in which the stroke grows from zero; auto: two periods")
+      .at_least(0);
+  s.optional("absorb", &Waves::absorb, unit::none,
+             "whether the piston moves so that it takes up waves that come back to it, by the "
+             "level of the water before it");
   s.check([](Waves& w, CheckContext& c) {
     w.direction = direction_of(w.direction);
-    if (w.direction.isZero(0)) return c.error("direction", "the direction has no length", "give a vector that is not zero");
-    if (w.absorb && std::abs(w.direction.z()) > 1e-9) c.error("direction", "waves that are to be taken up must run level", "a direction without z");
+    if (w.direction.isZero(0))
+      return c.error("direction", "the direction has no length", "give a vector that is not zero");
+    if (w.absorb && std::abs(w.direction.z()) > 1e-9)
+      c.error("direction", "waves that are to be taken up must run level", "a direction without z");
     if (w.height >= 0.78 * w.depth)
-      c.error("height", fmt::format("waves break before they are as high as 0.78 of the depth, here {:.4g} m", 0.78 * w.depth), "a lower wave, or deeper water");
+      c.error("height",
+              fmt::format("waves break before they are as high as 0.78 of the depth, here {:.4g} m",
+                          0.78 * w.depth),
+              "a lower wave, or deeper water");
     const double steepness = w.height * w.wave_number() / (2 * std::numbers::pi);
     if (steepness >= 0.142 * std::tanh(w.wave_number() * w.depth))
-      c.error("height", fmt::format("waves of this period break when they are steeper than 0.142 tanh(kd); this one is {:.3g}", steepness), "a lower or a longer wave");
+      c.error("height",
+              fmt::format("waves of this period break when they are steeper than 0.142 tanh(kd); "
+                          "this one is {:.3g}",
+                          steepness),
+              "a lower or a longer wave");
     // With more than this the wave of second order has a second crest in its trough.
-    const double length = 2 * std::numbers::pi / w.wave_number(), ursell = w.height * length * length / std::pow(w.depth, 3);
+    const double length = 2 * std::numbers::pi / w.wave_number(),
+                 ursell = w.height * length * length / std::pow(w.depth, 3);
     const double highest = 8 * std::numbers::pi * std::numbers::pi / 3;
     if (w.order == 2 && ursell >= highest)
-      c.error("order", fmt::format("H L^2 / d^3 is {:.3g}; the theory of second order holds below {:.3g}", ursell, highest), "order: 1, a lower or a shorter wave, or deeper water");
+      c.error("order",
+              fmt::format("H L^2 / d^3 is {:.3g}; the theory of second order holds below {:.3g}",
+                          ursell, highest),
+              "order: 1, a lower or a shorter wave, or deeper water");
   });
   return s;
 }
@@ -42,7 +63,8 @@ double Waves::omega() const { return 2 * std::numbers::pi / period; }
 
 double Waves::wave_number() const {
   const double deep = omega() * omega() * depth / gravity;
-  // x tanh x = deep: from Eckart's guess by Newton's steps, which converge from there for any depth.
+  // x tanh x = deep: from Eckart's guess by Newton's steps, which converge from there for any
+  // depth.
   double x = deep / std::sqrt(std::tanh(deep));
   for (int k = 0; k < 50; ++k) {
     const double t = std::tanh(x), next = x - (x * t - deep) / (t + x * (1 - t * t));
@@ -74,16 +96,21 @@ double Waves::share(double t) const {
 Vec3 Waves::displacement(double t) const {
   const double part = share(t), phase = omega() * t;
   // What is of second order grows with the square of the height.
-  return (0.5 * stroke() * part * std::sin(phase) + second_amplitude() * part * part * std::sin(2 * phase)) * direction;
+  return (0.5 * stroke() * part * std::sin(phase) +
+          second_amplitude() * part * part * std::sin(2 * phase)) *
+         direction;
 }
 
 double Waves::elevation(double distance, double t) const {
   const double k = wave_number(), part = share(t), phase = omega() * t - k * distance;
-  double eta = 0.5 * height * part * std::cos(phase) + evanescent(distance) * displacement(t).dot(direction);
+  double eta =
+      0.5 * height * part * std::cos(phase) + evanescent(distance) * displacement(t).dot(direction);
   if (order >= 2) {
-    // Stokes' second crest. Beyond kd = 20 its factor is 2 to all digits, and the functions overflow.
+    // Stokes' second crest. Beyond kd = 20 its factor is 2 to all digits, and the functions
+    // overflow.
     const double x = std::min(k * depth, 20.0), s = std::sinh(x);
-    eta += k * height * height / 16 * std::cosh(x) * (2 + std::cosh(2 * x)) / (s * s * s) * part * part * std::cos(2 * phase);
+    eta += k * height * height / 16 * std::cosh(x) * (2 + std::cosh(2 * x)) / (s * s * s) * part *
+           part * std::cos(2 * phase);
   }
   return eta;
 }
@@ -91,7 +118,8 @@ double Waves::elevation(double distance, double t) const {
 double Waves::evanescent(double distance) const {
   const double deep = omega() * omega() * depth / gravity;
   double sum = 0;
-  // One root of -y tan y = deep between (n - 1/2) pi and n pi. Terms fall as 1/n^3, and faster away from the piston.
+  // One root of -y tan y = deep between (n - 1/2) pi and n pi. Terms fall as 1/n^3, and faster away
+  // from the piston.
   for (int n = 1; n <= 40; ++n) {
     double low = (n - 0.5) * std::numbers::pi, high = n * std::numbers::pi;
     for (int k = 0; k < 60; ++k) {
@@ -99,7 +127,8 @@ double Waves::evanescent(double distance) const {
       (-y * std::tan(y) < deep ? high : low) = y;
     }
     const double y = 0.5 * (low + high);
-    sum -= 2 * deep * std::sin(2 * y) / (y * (2 * y + std::sin(2 * y))) * std::exp(-y * distance / depth);
+    sum -= 2 * deep * std::sin(2 * y) / (y * (2 * y + std::sin(2 * y))) *
+           std::exp(-y * distance / depth);
   }
   return sum;
 }

@@ -15,8 +15,8 @@
 #include <iterator>
 #include <map>
 #include <sstream>
-#include <utility>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/text.h"
@@ -101,16 +101,19 @@ class Builder final : public YAML::EventHandler {
                                limits_.text));
       throw Stop{};
     }
-    if (const auto control = std::find_if(value.begin(), value.end(), is_control); control != value.end()) {
+    if (const auto control = std::find_if(value.begin(), value.end(), is_control);
+        control != value.end()) {
       found_.error("E002", node.place, {},
-                   fmt::format("not a text: it holds the byte {}", static_cast<int>(static_cast<unsigned char>(*control))),
+                   fmt::format("not a text: it holds the byte {}",
+                               static_cast<int>(static_cast<unsigned char>(*control))),
                    "leave the control character out");
       throw Stop{};
     }
     // The library turns `\N` and `\_` into single bytes.
     if (const std::size_t at = invalid_utf8(value); at != std::string::npos) {
       found_.error("E002", node.place, {},
-                   fmt::format("not a text: it holds the byte 0x{:02X}, which is no UTF-8", static_cast<unsigned char>(value[at])),
+                   fmt::format("not a text: it holds the byte 0x{:02X}, which is no UTF-8",
+                               static_cast<unsigned char>(value[at])),
                    "write \\u0085 in place of \\N and \\u00a0 in place of \\_");
       throw Stop{};
     }
@@ -255,12 +258,11 @@ Place place_of_byte(std::string_view text, std::size_t at, const std::string& na
           static_cast<int>(at - line_start) + 1};
 }
 
-/// Bytes that YAML does not allow, or that are no UTF-8; the library would take some of them for the
-/// end of the text and replace others.
+/// Bytes that YAML does not allow, or that are no UTF-8; the library would take some of them for
+/// the end of the text and replace others.
 bool is_no_text(std::string_view text, const std::string& name, Diagnostics& found) {
   if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-    found.error("E002", {name, 1, 1}, {}, "the file is not UTF-8 but UTF-16",
-                "save it as UTF-8");
+    found.error("E002", {name, 1, 1}, {}, "the file is not UTF-8 but UTF-16", "save it as UTF-8");
     return true;
   }
   const auto control = std::find_if(text.begin(), text.end(), is_control);
@@ -282,20 +284,26 @@ bool is_no_text(std::string_view text, const std::string& name, Diagnostics& fou
 }
 
 /// What would take the library much memory before the builder can count its values.
-bool is_too_dense(std::string_view text, const std::string& name, const YamlLimits& limits, Diagnostics& found) {
+bool is_too_dense(std::string_view text, const std::string& name, const YamlLimits& limits,
+                  Diagnostics& found) {
   std::size_t punctuation = 0;
   int line = 1;
   for (std::size_t start = 0; start < text.size(); ++line) {
     const std::size_t end = std::min(text.find('\n', start), text.size());
     if (end - start > limits.line) {
-      found.error("E006", {name, line, 1}, {}, fmt::format("a line of {} bytes; at most {} are allowed", end - start, limits.line),
-                  "break it into lines; put large tables into a CSV file");
+      found.error(
+          "E006", {name, line, 1}, {},
+          fmt::format("a line of {} bytes; at most {} are allowed", end - start, limits.line),
+          "break it into lines; put large tables into a CSV file");
       return true;
     }
     for (std::size_t k = start; k < end; ++k) {
-      if (std::string_view("[]{},").find(text[k]) == std::string_view::npos || ++punctuation <= limits.punctuation) continue;
+      if (std::string_view("[]{},").find(text[k]) == std::string_view::npos ||
+          ++punctuation <= limits.punctuation)
+        continue;
       found.error("E006", {name, line, static_cast<int>(k - start) + 1}, {},
-                  fmt::format("the deck holds more than {} brackets, braces and commas", limits.punctuation),
+                  fmt::format("the deck holds more than {} brackets, braces and commas",
+                              limits.punctuation),
                   "put large tables into a CSV file");
       return true;
     }
@@ -359,7 +367,8 @@ std::optional<std::string> read_text_file(const std::string& path, const Place& 
   std::string why;
   if (std::filesystem::is_directory(status)) {
     why = "it is a folder";
-  } else if (only_regular && std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
+  } else if (only_regular && std::filesystem::exists(status) &&
+             !std::filesystem::is_regular_file(status)) {
     why = "it is no regular file";
   } else {
     errno = 0;

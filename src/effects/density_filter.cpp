@@ -12,7 +12,8 @@ template <int Dim>
 struct FilterPair {
   Kernel<Dim> kernel;
   double per_h;
-  static constexpr int deviation = 7;  ///< slot of rho / rho0 - 1 in the first record while this pass runs
+  static constexpr int deviation =
+      7;  ///< slot of rho / rho0 - 1 in the first record while this pass runs
 
   template <class T>
   struct Sums {
@@ -21,7 +22,8 @@ struct FilterPair {
   };
 
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j, const LaneVec<Dim, T>& r, const T& r2) const {
+  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j,
+                  const LaneVec<Dim, T>& r, const T& r2) const {
     const T w = kernel.w(r2) * j[water_slot::volume];
     T p[Dim + 1];
     p[0] = T(1);
@@ -34,17 +36,20 @@ struct FilterPair {
   }
 };
 
-/// Density by a first-order consistent Shepard filter (ref. 36 of the paper): the value at the particle of the linear function
-/// that fits the densities around best. It keeps a hydrostatic density to round-off also at walls and surfaces, and smooths the rest.
+/// Density by a first-order consistent Shepard filter (ref. 36 of the paper): the value at the
+/// particle of the linear function that fits the densities around best. It keeps a hydrostatic
+/// density to round-off also at walls and surfaces, and smooths the rest.
 template <int Dim>
 class DensityFilter final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"density_filter", Stage::reinitialize, "section 4.2, ref. 36", "density by a corrected (first-order consistent) Shepard filter", false};
+    return {"density_filter", Stage::reinitialize, "section 4.2, ref. 36",
+            "density by a corrected (first-order consistent) Shepard filter", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
-    if (world.model().numerics.density_reinitialization != "shepard") return {"numerics.density_reinitialization is not shepard"};
+    if (world.model().numerics.density_reinitialization != "shepard")
+      return {"numerics.density_reinitialization is not shepard"};
     return {std::make_unique<DensityFilter>(world), "numerics.density_reinitialization is shepard"};
   }
 
@@ -52,7 +57,8 @@ class DensityFilter final : public Effect<Dim> {
 
   std::string acts_on() const override { return "water"; }
   Needs needs() const override {
-    Needs n{{{"water", &fields::mass, Access::read}, {"water", &fields::density, Access::update}}, {{"water", "water"}}};
+    Needs n{{{"water", &fields::mass, Access::read}, {"water", &fields::density, Access::update}},
+            {{"water", "water"}}};
     n.fields.insert(n.fields.end(), volume_.fields.begin(), volume_.fields.end());
     return n;
   }
@@ -75,23 +81,26 @@ class DensityFilter final : public Effect<Dim> {
         records[i][pair.deviation] = static_cast<T>(rho[i] / rho0 - 1);
       });
       // The pass reads densities from the records, so each may be written as it is found.
-      gather<FilterPair<Dim>::template Sums>(world.list("water", "water"), records, records, pair, [&](Index i, const auto& s) {
-        Matrix a;
-        Eigen::Matrix<double, Dim + 1, 1> b;
-        int k = 0;
-        for (int r = 0; r <= Dim; ++r) {
-          for (int c = r; c <= Dim; ++c) a(r, c) = a(c, r) = s.moment[k++];
-          b[r] = s.density[r];
-        }
-        const double self = pair.kernel.w(0.0) * volume(i);
-        a(0, 0) += self;
-        b[0] += self * (rho[i] / rho0 - 1);
-        // Few neighbors, or all in a plane: no line fits them, and the density stays.
-        double spread = 1;
-        for (int d = 1; d <= Dim; ++d) spread *= a(d, d);
-        if (a(0, 0) < 0.3 || a.template bottomRightCorner<Dim, Dim>().determinant() < 0.05 * spread) return;
-        rho[i] = rho0 * (1 + a.inverse().row(0).dot(b));
-      });
+      gather<FilterPair<Dim>::template Sums>(
+          world.list("water", "water"), records, records, pair, [&](Index i, const auto& s) {
+            Matrix a;
+            Eigen::Matrix<double, Dim + 1, 1> b;
+            int k = 0;
+            for (int r = 0; r <= Dim; ++r) {
+              for (int c = r; c <= Dim; ++c) a(r, c) = a(c, r) = s.moment[k++];
+              b[r] = s.density[r];
+            }
+            const double self = pair.kernel.w(0.0) * volume(i);
+            a(0, 0) += self;
+            b[0] += self * (rho[i] / rho0 - 1);
+            // Few neighbors, or all in a plane: no line fits them, and the density stays.
+            double spread = 1;
+            for (int d = 1; d <= Dim; ++d) spread *= a(d, d);
+            if (a(0, 0) < 0.3 ||
+                a.template bottomRightCorner<Dim, Dim>().determinant() < 0.05 * spread)
+              return;
+            rho[i] = rho0 * (1 + a.inverse().row(0).dot(b));
+          });
     });
   }
 

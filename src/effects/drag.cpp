@@ -8,20 +8,26 @@ namespace {
 
 /// Drag between water and soil (Eqs. 29 to 31, 46, 59), after all other forces of the step.
 ///
-/// Each water particle meets the soil's mean velocity around it (Eq. 57), and hands its impulse to the soil particles with the
-/// weights of that mean: one coefficient for both sides, so momentum is exact. As the drag of fine soil is stiffer than any
-/// acoustic step, it is taken with the relative velocity at the end of the step. For a pair of masses m and M that reads
+/// Each water particle meets the soil's mean velocity around it (Eq. 57), and hands its impulse to
+/// the soil particles with the weights of that mean: one coefficient for both sides, so momentum is
+/// exact. As the drag of fine soil is stiffer than any acoustic step, it is taken with the relative
+/// velocity at the end of the step. For a pair of masses m and M that reads
 ///
 ///   d (1 + dt (L + Q |d|) V / mu) = d*,   1 / mu = 1 / m + 1 / M,
 ///
-/// with d* the relative velocity that the other forces alone would lead to: a quadratic for |d|, without iteration. Steady
-/// seepage comes out exact at any permeability. M is an upper bound of how the soil answers (see WaterFraction); with it the
-/// drag takes energy from every motion of the particles, whatever the time step.
+/// with d* the relative velocity that the other forces alone would lead to: a quadratic for |d|,
+/// without iteration. Steady seepage comes out exact at any permeability. M is an upper bound of
+/// how the soil answers (see WaterFraction); with it the drag takes energy from every motion of the
+/// particles, whatever the time step.
 template <int Dim>
 class Drag final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"drag", Stage::force, "Eqs. 29-31, 46, 57, 59", "drag between water and soil, both ways, implicit in the relative velocity", false,
+    return {"drag",
+            Stage::force,
+            "Eqs. 29-31, 46, 57, 59",
+            "drag between water and soil, both ways, implicit in the relative velocity",
+            false,
             "water and soil pass through each other without resistance"};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
@@ -32,18 +38,28 @@ class Drag final : public Effect<Dim> {
       const std::string law = p.material->drag_law();
       if (laws.find(law) == std::string::npos) laws += (laws.empty() ? "" : " and ") + law;
     }
-    if (laws.empty()) return {"no soil has a drag law: neither grain_size nor hydraulic_conductivity is given, or drag is none"};
+    if (laws.empty())
+      return {
+          "no soil has a drag law: neither grain_size nor hydraulic_conductivity is given, or drag "
+          "is none"};
     return {std::make_unique<Drag>(world), "there are water and soil; law: " + laws};
   }
 
-  explicit Drag(const World<Dim>& world) : deformable_(SoilParts(world).deformable), moves_(soil_moves(world)) {}
+  explicit Drag(const World<Dim>& world)
+      : deformable_(SoilParts(world).deformable), moves_(soil_moves(world)) {}
 
-  std::string acts_on() const override { return deformable_ ? "water near soil, soil near water" : "water near soil"; }
+  std::string acts_on() const override {
+    return deformable_ ? "water near soil, soil near water" : "water near soil";
+  }
   Needs needs() const override {
-    Needs n{{{"water", &fields::water_fraction, Access::read}, {"water", &fields::soil_sum, Access::read},
-             {"water", &fields::drag_linear, Access::read}, {"water", &fields::drag_quadratic, Access::read},
-             {"water", &fields::density, Access::read}, {"water", &fields::mass, Access::read},
-             {"water", &fields::acceleration_sum, Access::update}, {"water", &fields::drag_acceleration, Access::write}},
+    Needs n{{{"water", &fields::water_fraction, Access::read},
+             {"water", &fields::soil_sum, Access::read},
+             {"water", &fields::drag_linear, Access::read},
+             {"water", &fields::drag_quadratic, Access::read},
+             {"water", &fields::density, Access::read},
+             {"water", &fields::mass, Access::read},
+             {"water", &fields::acceleration_sum, Access::update},
+             {"water", &fields::drag_acceleration, Access::write}},
             {{"water", "soil"}}};
     if (moves_) n.fields.push_back({"soil", &fields::velocity, Access::read});
     if (deformable_) {
@@ -86,7 +102,9 @@ class Drag final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& records = pore_records<T>(world, "soil");
-      parallel_for(soil_->size(), [&](Index k) { put_vector<Dim>(records[k], parts[part[k]].moves ? Vec<Dim>(v[k] + dt * (*a)[k]) : v[k]); });
+      parallel_for(soil_->size(), [&](Index k) {
+        put_vector<Dim>(records[k], parts[part[k]].moves ? Vec<Dim>(v[k] + dt * (*a)[k]) : v[k]);
+      });
     });
   }
 
@@ -97,7 +115,8 @@ class Drag final : public Effect<Dim> {
     const auto& rho = water_->scalar(fields::density);
     const auto& m = water_->scalar(fields::mass);
     const auto& v = water_->vector(fields::velocity);
-    const Field<double>* inverse_mass = deformable_ ? &water_->scalar(fields::inverse_soil_mass) : nullptr;
+    const Field<double>* inverse_mass =
+        deformable_ ? &water_->scalar(fields::inverse_soil_mass) : nullptr;
     auto& a = water_->vector(fields::acceleration_sum);
     auto& drag = water_->vector(fields::drag_acceleration);
     world.with_pair_precision([&](auto number) {
@@ -105,10 +124,13 @@ class Drag final : public Effect<Dim> {
       auto& records = pore_records<T>(world, "water");
       for_targets(world.list("water", "soil"), [&](Index i) {
         const Vec<Dim> ahead = v[i] + dt * a[i] - drag[i];  // d*
-        const double volume = m[i] / (n[i] * rho[i]), inverse = 1 / m[i] + (inverse_mass ? (*inverse_mass)[i] : 0.0);
-        const double b = 1 + dt * linear[i] * volume * inverse, c = dt * quadratic[i] * volume * inverse, speed = ahead.norm();
+        const double volume = m[i] / (n[i] * rho[i]),
+                     inverse = 1 / m[i] + (inverse_mass ? (*inverse_mass)[i] : 0.0);
+        const double b = 1 + dt * linear[i] * volume * inverse,
+                     c = dt * quadratic[i] * volume * inverse, speed = ahead.norm();
         const double share = 2 / (b + std::sqrt(b * b + 4 * c * speed));  // d / d*
-        const Vec<Dim> force = (volume * (linear[i] + quadratic[i] * share * speed) * share) * ahead;
+        const Vec<Dim> force =
+            (volume * (linear[i] + quadratic[i] * share * speed) * share) * ahead;
         drag[i] = force / -m[i];
         a[i] += drag[i];
         put_vector<Dim>(records[i], force);

@@ -14,22 +14,24 @@ namespace sphgeo {
 
 /// The places of Algorithm 2 where effects run, in order.
 enum class Stage {
-  exchange,      ///< once per advection step, before particles are sorted: some enter, some leave
-  reinitialize,  ///< once per advection step, after the neighbor lists are new (lines 11, 12)
-  predict,       ///< to the middle of the acoustic step (Eq. 96)
-  force,         ///< accelerations at the middle (Eqs. 59, 60)
-  kick,          ///< velocity and place at the end (Eqs. 97, 98)
-  solid_predict, ///< kappa times per acoustic step: solids to the middle of their own step (Eq. 99)
-  solid_force,   ///< their accelerations there (Eqs. 65, 79)
-  solid_kick,    ///< their velocity and place at its end (Eqs. 100, 101)
-  solid_finish,  ///< once per acoustic step: what water and soil see of the solids
-  rate,          ///< rates of density with the new velocities, also of the solids (Eq. 58)
-  correct,       ///< density at the end (Eq. 98)
-  observe        ///< only when a probe or a frame is due
+  exchange,       ///< once per advection step, before particles are sorted: some enter, some leave
+  reinitialize,   ///< once per advection step, after the neighbor lists are new (lines 11, 12)
+  predict,        ///< to the middle of the acoustic step (Eq. 96)
+  force,          ///< accelerations at the middle (Eqs. 59, 60)
+  kick,           ///< velocity and place at the end (Eqs. 97, 98)
+  solid_predict,  ///< kappa times per acoustic step: solids to the middle of their own step (Eq.
+                  ///< 99)
+  solid_force,    ///< their accelerations there (Eqs. 65, 79)
+  solid_kick,     ///< their velocity and place at its end (Eqs. 100, 101)
+  solid_finish,   ///< once per acoustic step: what water and soil see of the solids
+  rate,           ///< rates of density with the new velocities, also of the solids (Eq. 58)
+  correct,        ///< density at the end (Eq. 98)
+  observe         ///< only when a probe or a frame is due
 };
-inline constexpr Stage all_stages[] = {Stage::exchange, Stage::reinitialize, Stage::predict, Stage::force, Stage::kick,
-                                       Stage::solid_predict, Stage::solid_force, Stage::solid_kick, Stage::solid_finish,
-                                       Stage::rate, Stage::correct, Stage::observe};
+inline constexpr Stage all_stages[] = {
+    Stage::exchange,     Stage::reinitialize,  Stage::predict,     Stage::force,
+    Stage::kick,         Stage::solid_predict, Stage::solid_force, Stage::solid_kick,
+    Stage::solid_finish, Stage::rate,          Stage::correct,     Stage::observe};
 const char* stage_name(Stage stage);
 
 /// read: the value is needed. write: set from scratch. add: summed onto a value that another effect
@@ -60,7 +62,8 @@ struct EffectInfo {
   std::string sentence;
   /// A supporting effect runs only when something active reads a field that it writes.
   bool supporting = false;
-  /// What a scene is without it, as "soil does not feel ..."; empty for an effect that no deck can switch off.
+  /// What a scene is without it, as "soil does not feel ..."; empty for an effect that no deck can
+  /// switch off.
   std::string when_off = {};
 };
 
@@ -70,8 +73,8 @@ struct StepLimits {
   double acoustic = std::numeric_limits<double>::infinity();
   double solid = std::numeric_limits<double>::infinity();
   const char* acoustic_by = "nothing";  ///< what bounds the acoustic step
-  double mach = 0;       ///< largest |v| / c of any set; NaN when a velocity is no number
-  std::string fastest;   ///< the set that holds it
+  double mach = 0;      ///< largest |v| / c of any set; NaN when a velocity is no number
+  std::string fastest;  ///< the set that holds it
 
   /// `by` tells what asks for the bound.
   void lower_acoustic(double bound, const char* by) {
@@ -111,8 +114,9 @@ class Effect {
   /// Called once, after all fields and lists exist: take references here.
   virtual void prepare(World<Dim>&) {}
   virtual void apply(World<Dim>&) = 0;
-  /// For a run that goes on in the middle of an advection step: brings back what apply() of the reinitialize stage
-  /// left outside of the fields for the acoustic steps. The clock shows the start of the advection step.
+  /// For a run that goes on in the middle of an advection step: brings back what apply() of the
+  /// reinitialize stage left outside of the fields for the acoustic steps. The clock shows the
+  /// start of the advection step.
   virtual void restore(World<Dim>&) {}
   /// Lowers the bounds to what this effect stays stable with.
   virtual void limit(const World<Dim>&, StepLimits&) const {}
@@ -160,8 +164,9 @@ class EffectRegistry {
   static std::vector<Entry>& entries();
 };
 
-/// Self-registration: `static const RegisterEffect<MyEffect> registered;` at the end of the effect's
-/// file. MyEffect needs `static EffectInfo info()` and `static Binding<Dim> bind(const World<Dim>&)`.
+/// Self-registration: `static const RegisterEffect<MyEffect> registered;` at the end of the
+/// effect's file. MyEffect needs `static EffectInfo info()` and `static Binding<Dim> bind(const
+/// World<Dim>&)`.
 template <template <int> class E>
 class RegisterEffect {
  public:

@@ -15,10 +15,11 @@ struct Newcomer {
   Vec<Dim> place, velocity;
 };
 
-/// Appends particles of water of the density at rest under `depth_pressure` [Pa] to the set, and enters them into the
-/// book of the boundary. Ids go on from the largest that there was.
+/// Appends particles of water of the density at rest under `depth_pressure` [Pa] to the set, and
+/// enters them into the book of the boundary. Ids go on from the largest that there was.
 template <int Dim>
-void let_in(World<Dim>& world, ParticleSet<Dim>& water, const std::string& boundary, const std::vector<Newcomer<Dim>>& newcomers, double pressure = 0) {
+void let_in(World<Dim>& world, ParticleSet<Dim>& water, const std::string& boundary,
+            const std::vector<Newcomer<Dim>>& newcomers, double pressure = 0) {
   if (newcomers.empty()) return;
   const Index first = water.size();
   const double density = water.constant("density"), c = water.constant("sound_speed");
@@ -47,7 +48,8 @@ void prepare_entry(World<Dim>& world, const ParticleSet<Dim>& water, const std::
   next = std::max(next, static_cast<double>(water.size()));
 }
 
-/// One instance of an effect for each boundary of type B, which its constructor takes; none without the sets that it needs.
+/// One instance of an effect for each boundary of type B, which its constructor takes; none without
+/// the sets that it needs.
 template <class B, template <int> class E, int Dim>
 Binding<Dim> bind_exchange(const World<Dim>& world, const std::string& what) {
   Binding<Dim> binding("there is no " + what);

@@ -5,8 +5,8 @@
 namespace sphgeo {
 namespace {
 
-/// The clock of a scene in which nothing moves, such as one that only leads material points along stress
-/// paths: as fast as its probes want to look.
+/// The clock of a scene in which nothing moves, such as one that only leads material points along
+/// stress paths: as fast as its probes want to look.
 template <int Dim>
 class IdleClock final : public Effect<Dim> {
  public:

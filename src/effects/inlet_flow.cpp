@@ -11,12 +11,20 @@ template <int Dim>
 class InletFlow final : public Effect<Dim> {
  public:
   explicit InletFlow(const Inlet& inlet) : inlet_(inlet) {}
-  static EffectInfo info() { return {"inlet_flow", Stage::exchange, "5.1, 6.1", "layers of water that enter through an inlet", false}; }
-  static Binding<Dim> bind(const World<Dim>& world) { return bind_exchange<Inlet, InletFlow>(world, "an inlet"); }
+  static EffectInfo info() {
+    return {"inlet_flow", Stage::exchange, "5.1, 6.1",
+            "layers of water that enter through an inlet", false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    return bind_exchange<Inlet, InletFlow>(world, "an inlet");
+  }
 
   std::string acts_on() const override { return "water, inlet '" + inlet_.name + "'"; }
   Needs needs() const override {
-    return {{{"water", &fields::position, Access::update}, {"water", &fields::velocity, Access::update}, {"water", &fields::density, Access::update}}, {}};
+    return {{{"water", &fields::position, Access::update},
+             {"water", &fields::velocity, Access::update},
+             {"water", &fields::density, Access::update}},
+            {}};
   }
 
   void prepare(World<Dim>& world) override {
@@ -27,25 +35,31 @@ class InletFlow final : public Effect<Dim> {
   }
 
   void apply(World<Dim>& world) override {
-    double &way = world.kept(key("way")), &layers = world.kept(key("layers")), &last = world.kept(key("time"));
-    const double begin = std::max(last, inlet_.from), now = std::min(world.clock.time, inlet_.until.value_or(world.clock.time));
+    double &way = world.kept(key("way")), &layers = world.kept(key("layers")),
+           &last = world.kept(key("time"));
+    const double begin = std::max(last, inlet_.from),
+                 now = std::min(world.clock.time, inlet_.until.value_or(world.clock.time));
     last = std::max(last, world.clock.time);
     const int across = inlet_.axis(Dim);
     const double direction = inlet_.velocity_at(inlet_.from)[across] > 0 ? 1 : -1;
     if (world.clock.time < inlet_.from || now < begin) return;
-    // The velocity at the middle of the interval is good to the second order; a step is a small part of what it takes to change.
+    // The velocity at the middle of the interval is good to the second order; a step is a small
+    // part of what it takes to change.
     const Vec3 velocity = inlet_.velocity_at(0.5 * (begin + now));
     const double dp = water_->spacing(), speed = std::max(0.0, direction * velocity[across]);
     way += speed * (now - begin);
     std::vector<Newcomer<Dim>> newcomers;
-    // A layer enters when half of it has come through, so that what has entered is the way to half a layer.
+    // A layer enters when half of it has come through, so that what has entered is the way to half
+    // a layer.
     for (; (layers + 0.5) * dp <= way; ++layers) {
       // Since it came through; no longer ago than the last step.
       const double ago = speed > 0 ? std::min((way - (layers + 0.5) * dp) / speed, now - begin) : 0;
       const Vec3 ahead = ago * velocity;
       for (std::size_t k = 0; k < layer_.size(); ++k) {
         const auto number = static_cast<std::uint64_t>(layers) * layer_.size() + k;
-        if (inlet_.share < 1 && random_uniform(static_cast<std::uint64_t>(inlet_.seed), number) >= inlet_.share) continue;
+        if (inlet_.share < 1 &&
+            random_uniform(static_cast<std::uint64_t>(inlet_.seed), number) >= inlet_.share)
+          continue;
         newcomers.push_back({to_scene<Dim>(layer_[k] + ahead), to_scene<Dim>(velocity)});
       }
     }

@@ -10,7 +10,8 @@ namespace sphgeo {
 
 struct LatticeSums {
   double number;  ///< sum of W dp^Dim, the particle itself included
-  double moment;  ///< minus the sum of x dW/dx dp^Dim: a linear field's gradient comes out this large
+  double
+      moment;  ///< minus the sum of x dW/dx dp^Dim: a linear field's gradient comes out this large
 };
 
 /// Sums over a lattice of spacing dp [m].
@@ -29,19 +30,22 @@ LatticeSums lattice_sums(const Kernel<Dim>& kernel, double dp) {
   return sums;
 }
 
-/// The sums over a lattice whose volume per particle is dp^Dim / share, for any share in (0, 1]: water in soil is spread wider
-/// than the kernel was made for, and its sums are the larger for it (in 2D for h = 1.8 dp: 1.002 at 1, 1.012 at 0.5, 1.11 at 0.2).
+/// The sums over a lattice whose volume per particle is dp^Dim / share, for any share in (0, 1]:
+/// water in soil is spread wider than the kernel was made for, and its sums are the larger for it
+/// (in 2D for h = 1.8 dp: 1.002 at 1, 1.012 at 0.5, 1.11 at 0.2).
 template <int Dim>
 class SpreadLattice {
  public:
   SpreadLattice(const Kernel<Dim>& kernel, double dp) {
-    for (int k = 0; k <= parts; ++k) at_[k] = lattice_sums(kernel, dp * std::pow(least + (1 - least) * k / parts, -1.0 / Dim));
+    for (int k = 0; k <= parts; ++k)
+      at_[k] = lattice_sums(kernel, dp * std::pow(least + (1 - least) * k / parts, -1.0 / Dim));
   }
   LatticeSums operator()(double share) const {
     const double s = std::clamp((share - least) / (1 - least), 0.0, 1.0) * parts;
     // A share that is no number gives sums that are none, for the guard to find.
     const int k = s >= 0 ? std::min(static_cast<int>(s), parts - 1) : 0;
-    return {at_[k].number + (s - k) * (at_[k + 1].number - at_[k].number), at_[k].moment + (s - k) * (at_[k + 1].moment - at_[k].moment)};
+    return {at_[k].number + (s - k) * (at_[k + 1].number - at_[k].number),
+            at_[k].moment + (s - k) * (at_[k + 1].moment - at_[k].moment)};
   }
 
  private:

@@ -10,21 +10,25 @@
 
 namespace sphgeo {
 
-/// Bound of the acoustic step by the bodies of a set of solids, s; endless where there is neither water nor soil.
+/// Bound of the acoustic step by the bodies of a set of solids, s; endless where there is neither
+/// water nor soil.
 ///
-/// Water and soil act on a solid with the pressure of one acoustic step through all of the step. Together with the layer of the
-/// body that they reach, as thick as a spacing or as the body, they are a spring of rho c^2 / dp and a mass of rho_body thickness,
-/// taken forward explicitly: with L = rho dp / (rho_body thickness), dt may be of the order of dp / (c sqrt(L)). Measured for
-/// plates of 1/30 to 2 times the density of water, 1 to 4 spacings thick, of layers of a quarter of a spacing to one, with water or
-/// sand on both sides: 1.2 dp / (c sqrt(L)) holds for all, and at 1.6 the first breaks. A rigid body moves as a whole: its
-/// thickness is its smallest extent.
+/// Water and soil act on a solid with the pressure of one acoustic step through all of the step.
+/// Together with the layer of the body that they reach, as thick as a spacing or as the body, they
+/// are a spring of rho c^2 / dp and a mass of rho_body thickness, taken forward explicitly: with L
+/// = rho dp / (rho_body thickness), dt may be of the order of dp / (c sqrt(L)). Measured for plates
+/// of 1/30 to 2 times the density of water, 1 to 4 spacings thick, of layers of a quarter of a
+/// spacing to one, with water or sand on both sides: 1.2 dp / (c sqrt(L)) holds for all, and at 1.6
+/// the first breaks. A rigid body moves as a whole: its thickness is its smallest extent.
 ///
-/// A plate also vibrates through its thickness. A spring that looks at it once in half of that period, or a little more often,
-/// drives it up, as in any scheme of two time steps: seen for a plate of two layers with L of 4.7 in sand, at 3 steps to the
-/// period. So beside bodies with L above 2 the acoustic step is at most 1.5 of their own.
+/// A plate also vibrates through its thickness. A spring that looks at it once in half of that
+/// period, or a little more often, drives it up, as in any scheme of two time steps: seen for a
+/// plate of two layers with L of 4.7 in sand, at 3 steps to the period. So beside bodies with L
+/// above 2 the acoustic step is at most 1.5 of their own.
 ///
-/// (Where water and soil are compressed by the mean velocity of a solid in the step before, as in the print, the spring is one and a
-/// half steps late, and only radiation damps what that feeds to it: dt has to be below 0.4 dp / (c L), and plates shake long before.)
+/// (Where water and soil are compressed by the mean velocity of a solid in the step before, as in
+/// the print, the spring is one and a half steps late, and only radiation damps what that feeds to
+/// it: dt has to be below 0.4 dp / (c L), and plates shake long before.)
 template <int Dim>
 double step_beside_light_solids(const World<Dim>& world, const std::string& set_name) {
   const ParticleSet<Dim>& set = world.set(set_name);
@@ -57,17 +61,20 @@ double step_beside_light_solids(const World<Dim>& world, const std::string& set_
       // Half the body is as thick as its innermost particle is deep.
       for (Index i = 0; i < set.size() && thickness < coarsest; ++i)
         if (part[i] == static_cast<std::int32_t>(b))
-          thickness = std::max(thickness, set.spacing() - 2 * shape.signed_distance(to_space<Dim>(reference[i])));
+          thickness = std::max(
+              thickness, set.spacing() - 2 * shape.signed_distance(to_space<Dim>(reference[i])));
     } else {
       const Vec3 extent = shape.box().hi - shape.box().lo;
-      thickness = std::max(thickness, Dim == 2 ? std::min(extent.x(), extent.z()) : extent.minCoeff());
+      thickness =
+          std::max(thickness, Dim == 2 ? std::min(extent.x(), extent.z()) : extent.minCoeff());
     }
     for (const Medium& m : media) {
       const double moved = body.elastic ? std::min(thickness, m.spacing) : thickness;
       const double lightness = m.density * m.spacing / (body.material->density * moved);
       bound = std::min(bound, 0.8 * m.spacing / (m.sound * std::sqrt(lightness)));
       if (body.elastic && lightness > 2)
-        bound = std::min(bound, 1.5 * solid_courant(world.model().numerics) * set.smoothing_length() / body.wave_speed);
+        bound = std::min(bound, 1.5 * solid_courant(world.model().numerics) *
+                                    set.smoothing_length() / body.wave_speed);
     }
   }
   return bound;

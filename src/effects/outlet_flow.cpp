@@ -9,8 +9,13 @@ template <int Dim>
 class OutletFlow final : public Effect<Dim> {
  public:
   explicit OutletFlow(const Outlet& outlet) : outlet_(outlet) {}
-  static EffectInfo info() { return {"outlet_flow", Stage::exchange, "5.1, 6.1", "particles that leave through an outlet", false}; }
-  static Binding<Dim> bind(const World<Dim>& world) { return bind_exchange<Outlet, OutletFlow>(world, "an outlet"); }
+  static EffectInfo info() {
+    return {"outlet_flow", Stage::exchange, "5.1, 6.1", "particles that leave through an outlet",
+            false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    return bind_exchange<Outlet, OutletFlow>(world, "an outlet");
+  }
 
   std::string acts_on() const override { return "outlet '" + outlet_.name + "'"; }
   Needs needs() const override { return {}; }
@@ -39,7 +44,8 @@ class OutletFlow final : public Effect<Dim> {
           continue;
         }
         book.left += 1;
-        book.add(-1, set->scalar(fields::mass)[i], x[i], set->vector(fields::velocity)[i], world.gravity());
+        book.add(-1, set->scalar(fields::mass)[i], x[i], set->vector(fields::velocity)[i],
+                 world.gravity());
       }
       if (static_cast<Index>(keep.size()) < set->size()) set->permute(keep);
     }

@@ -11,28 +11,34 @@
 
 namespace sphgeo {
 
-/// How far a particle is from the face of the resting clamp that holds it or is near, m: positive outside; empty if there is none.
+/// How far a particle is from the face of the resting clamp that holds it or is near, m: positive
+/// outside; empty if there is none.
 template <int Dim>
 std::optional<double> clamp_distance(const Body& body, const Vec<Dim>& at) {
   std::optional<double> nearest;
   for (const ClampedRegion& clamp : body.clamped)
     if (!clamp.motion)
-      if (const double d = clamp.shape->signed_distance(to_space<Dim>(at)); !nearest || d < *nearest) nearest = d;
+      if (const double d = clamp.shape->signed_distance(to_space<Dim>(at));
+          !nearest || d < *nearest)
+        nearest = d;
   return nearest;
 }
 
-/// Weights that are added to those of Eq. 66. In the bulk of a lattice those see a quadratic field's gradient exactly; near a
-/// surface they see it at a point further inside, by a fifth of a spacing or two: a plate of eight layers bends as if it
-/// were a twentieth thinner. The least change (in the norm of the kernel) that makes the gradient exact for the products
-/// of two coordinates, and leaves it exact for linear fields; none where the neighbors cannot tell, as in a plate of two
-/// layers.
+/// Weights that are added to those of Eq. 66. In the bulk of a lattice those see a quadratic
+/// field's gradient exactly; near a surface they see it at a point further inside, by a fifth of a
+/// spacing or two: a plate of eight layers bends as if it were a twentieth thinner. The least
+/// change (in the norm of the kernel) that makes the gradient exact for the products of two
+/// coordinates, and leaves it exact for linear fields; none where the neighbors cannot tell, as in
+/// a plate of two layers.
 ///
-/// Clamps. A held particle says that there is no displacement where it is, but the strain may begin at the face of the clamp,
-/// half a spacing before it and more: a clamped plate bends as if it were a spacing longer. So a free particle sees
-/// in place of a held one the mirror image of its own displacement, as water does at a wall (Eq. 95); what is held has
-/// no strain of its own. This is one vector per particle, kept as a weight of the particle on itself.
+/// Clamps. A held particle says that there is no displacement where it is, but the strain may begin
+/// at the face of the clamp, half a spacing before it and more: a clamped plate bends as if it were
+/// a spacing longer. So a free particle sees in place of a held one the mirror image of its own
+/// displacement, as water does at a wall (Eq. 95); what is held has no strain of its own. This is
+/// one vector per particle, kept as a weight of the particle on itself.
 ///
-/// by_target holds delta g_ij, by_source B_i^-1 delta g_ij for the forces, which stay the gradient of the energy.
+/// by_target holds delta g_ij, by_source B_i^-1 delta g_ij for the forces, which stay the gradient
+/// of the energy.
 template <int Dim>
 PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
   constexpr int terms = Dim + Dim * (Dim + 1) / 2;
@@ -53,7 +59,9 @@ PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
       for (int l = k; l < Dim; ++l, ++n) p[n] = r[k] * r[l] / (h * h);
     return p;
   };
-  std::vector<std::vector<typename PairWeights<Dim>::Entry>> rows(static_cast<std::size_t>(set.size())), turned(rows.size());
+  std::vector<std::vector<typename PairWeights<Dim>::Entry>> rows(
+      static_cast<std::size_t>(set.size())),
+      turned(rows.size());
   const auto blocks = world.reference_list(name).blocks();
   parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
     const auto& block = blocks[static_cast<std::size_t>(b)];
@@ -88,10 +96,12 @@ PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
       const Body& body = world.model().bodies[static_cast<std::size_t>(part[i])];
       if (clamp[i] < 0 && !body.clamped.empty()) {
         Vec<Dim> mirrored = Vec<Dim>::Zero();
-        const double own = std::max(clamp_distance<Dim>(body, at[i]).value_or(0), 0.499 * set.spacing());
+        const double own =
+            std::max(clamp_distance<Dim>(body, at[i]).value_or(0), 0.499 * set.spacing());
         for_neighbors([&](Index j, const Vec<Dim>& r, double, const Terms&) {
           if (clamp[j] < 0 || body.clamped[static_cast<std::size_t>(clamp[j])].motion) return;
-          mirrored += std::max(0.0, -clamp_distance<Dim>(body, at[j]).value_or(0)) / own * (-volume[i] * kernel.dw_over_r(r.squaredNorm()) * inverse * r);
+          mirrored += std::max(0.0, -clamp_distance<Dim>(body, at[j]).value_or(0)) / own *
+                      (-volume[i] * kernel.dw_over_r(r.squaredNorm()) * inverse * r);
         });
         if (mirrored.norm() > 0) keep(i, mirrored);
       }
@@ -99,10 +109,15 @@ PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
       if (wrong.norm() * h < 1e-6) continue;
       const Eigen::SelfAdjointEigenSolver<Moments> axes(moments);
       Terms inverse_of = axes.eigenvalues();
-      for (int n = 0; n < terms; ++n) inverse_of[n] = inverse_of[n] > 1e-5 * axes.eigenvalues()[terms - 1] ? 1 / inverse_of[n] : 0;
-      const Eigen::Matrix<double, terms, Dim> factor = -axes.eigenvectors() * inverse_of.asDiagonal() * axes.eigenvectors().transpose() * wrong;
+      for (int n = 0; n < terms; ++n)
+        inverse_of[n] =
+            inverse_of[n] > 1e-5 * axes.eigenvalues()[terms - 1] ? 1 / inverse_of[n] : 0;
+      const Eigen::Matrix<double, terms, Dim> factor =
+          -axes.eigenvectors() * inverse_of.asDiagonal() * axes.eigenvectors().transpose() * wrong;
       if ((moments * factor + wrong).norm() > 1e-6 * wrong.norm()) continue;
-      for_neighbors([&](Index j, const Vec<Dim>&, double w, const Terms& p) { keep(j, w * (factor.transpose() * p)); });
+      for_neighbors([&](Index j, const Vec<Dim>&, double w, const Terms& p) {
+        keep(j, w * (factor.transpose() * p));
+      });
     }
   });
   PairWeights<Dim> weights;

@@ -1,5 +1,5 @@
-#include <cmath>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "effects/exchange.h"
@@ -7,25 +7,35 @@
 namespace sphgeo {
 namespace {
 
-/// Water that is added where the surface has sunk by nearly a spacing: at a place of the layer below the level that has
-/// no water, soil or wall within 0.9 spacings. It takes the mean velocity of the water within two spacings.
+/// Water that is added where the surface has sunk by nearly a spacing: at a place of the layer
+/// below the level that has no water, soil or wall within 0.9 spacings. It takes the mean velocity
+/// of the water within two spacings.
 template <int Dim>
 class ReservoirFill final : public Effect<Dim> {
  public:
   explicit ReservoirFill(const Reservoir& reservoir) : reservoir_(reservoir) {}
-  static EffectInfo info() { return {"reservoir_fill", Stage::exchange, "5.1", "water added where a surface sinks below the level of a reservoir", false}; }
-  static Binding<Dim> bind(const World<Dim>& world) { return bind_exchange<Reservoir, ReservoirFill>(world, "a reservoir"); }
+  static EffectInfo info() {
+    return {"reservoir_fill", Stage::exchange, "5.1",
+            "water added where a surface sinks below the level of a reservoir", false};
+  }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    return bind_exchange<Reservoir, ReservoirFill>(world, "a reservoir");
+  }
 
   std::string acts_on() const override { return "water, reservoir '" + reservoir_.name + "'"; }
   Needs needs() const override {
-    return {{{"water", &fields::position, Access::update}, {"water", &fields::velocity, Access::update}, {"water", &fields::density, Access::update}}, {}};
+    return {{{"water", &fields::position, Access::update},
+             {"water", &fields::velocity, Access::update},
+             {"water", &fields::density, Access::update}},
+            {}};
   }
 
   void prepare(World<Dim>& world) override {
     water_ = &world.set("water");
     prepare_entry(world, *water_, reservoir_.name);
     places_.clear();
-    for (const Vec3& p : reservoir_.places(water_->spacing(), Dim)) places_.push_back(to_scene<Dim>(p));
+    for (const Vec3& p : reservoir_.places(water_->spacing(), Dim))
+      places_.push_back(to_scene<Dim>(p));
   }
 
   void apply(World<Dim>& world) override {
@@ -46,7 +56,9 @@ class ReservoirFill final : public Effect<Dim> {
     }
     std::vector<Newcomer<Dim>> newcomers;
     for (std::size_t p = 0; p < places_.size(); ++p)
-      if (!taken[p]) newcomers.push_back({places_[p], weight[p] > 0 ? Vec<Dim>(velocity[p] / weight[p]) : Vec<Dim>(Vec<Dim>::Zero())});
+      if (!taken[p])
+        newcomers.push_back({places_[p], weight[p] > 0 ? Vec<Dim>(velocity[p] / weight[p])
+                                                       : Vec<Dim>(Vec<Dim>::Zero())});
     let_in(world, *water_, reservoir_.name, newcomers);
   }
 
@@ -60,7 +72,8 @@ class ReservoirFill final : public Effect<Dim> {
   void for_near(const Field<Vec<Dim>>& x, Index n, double reach, F&& f) {
     const auto cell_of = [&](const Vec<Dim>& at) {
       Cell c;
-      for (int d = 0; d < Dim; ++d) c[static_cast<std::size_t>(d)] = static_cast<Index>(std::floor(at[d] / reach));
+      for (int d = 0; d < Dim; ++d)
+        c[static_cast<std::size_t>(d)] = static_cast<Index>(std::floor(at[d] / reach));
       return c;
     };
     if (cells_.empty())
@@ -70,7 +83,9 @@ class ReservoirFill final : public Effect<Dim> {
         hi_ = p == 0 ? places_[p] : Vec<Dim>(hi_.cwiseMax(places_[p]));
       }
     for (Index i = 0; i < n; ++i) {
-      if (!((x[i].array() >= lo_.array() - reach).all() && (x[i].array() <= hi_.array() + reach).all())) continue;
+      if (!((x[i].array() >= lo_.array() - reach).all() &&
+            (x[i].array() <= hi_.array() + reach).all()))
+        continue;
       const Cell middle = cell_of(x[i]);
       Cell c;
       visit(0, middle, c, [&] {

@@ -10,7 +10,8 @@
 
 namespace sphgeo {
 
-/// Motion of one rigid body, read off its particles; vectors have y = 0 in 2D, turns are about y there.
+/// Motion of one rigid body, read off its particles; vectors have y = 0 in 2D, turns are about y
+/// there.
 struct RigidMotion {
   double mass = 0;               ///< kg
   Vec3 center = Vec3::Zero();    ///< of mass, m
@@ -20,13 +21,16 @@ struct RigidMotion {
 
   /// Angular velocity, rad/s.
   Vec3 turning(int dimension) const {
-    if (dimension == 2) return inertia(1, 1) > 0 ? Vec3(0, spin.y() / inertia(1, 1), 0) : Vec3::Zero();
+    if (dimension == 2)
+      return inertia(1, 1) > 0 ? Vec3(0, spin.y() / inertia(1, 1), 0) : Vec3::Zero();
     // A row of particles does not resist turning about itself: that axis is left out.
     Eigen::SelfAdjointEigenSolver<Mat3> axes;
     axes.computeDirect(inertia);
     Vec3 turn = Vec3::Zero();
     for (int k = 0; k < 3; ++k)
-      if (axes.eigenvalues()[k] > 1e-9 * axes.eigenvalues()[2]) turn += axes.eigenvectors().col(k).dot(spin) / axes.eigenvalues()[k] * axes.eigenvectors().col(k);
+      if (axes.eigenvalues()[k] > 1e-9 * axes.eigenvalues()[2])
+        turn += axes.eigenvectors().col(k).dot(spin) / axes.eigenvalues()[k] *
+                axes.eigenvectors().col(k);
     return turn;
   }
 };
@@ -46,9 +50,10 @@ class RigidBodies {
 
   RigidMotion motion(const World<Dim>& world, std::size_t body) const;
 
-  /// Moves the particles of a body for a time with its velocity and turning. Its angular momentum stays, and its
-  /// velocities become what that means at the new places.
-  static void advance(ParticleSet<Dim>& set, const std::vector<std::uint32_t>& particles, RigidMotion m, double time);
+  /// Moves the particles of a body for a time with its velocity and turning. Its angular momentum
+  /// stays, and its velocities become what that means at the new places.
+  static void advance(ParticleSet<Dim>& set, const std::vector<std::uint32_t>& particles,
+                      RigidMotion m, double time);
 
  private:
   std::string set_;
@@ -63,7 +68,8 @@ void RigidBodies<Dim>::find(const World<Dim>& world) {
   const SolidParts parts(world);
   std::vector<std::vector<std::uint32_t>> all(parts.of.size());
   for (Index i = 0; i < set.size(); ++i)
-    if (!parts[part[i]].elastic) all[static_cast<std::size_t>(part[i])].push_back(static_cast<std::uint32_t>(i));
+    if (!parts[part[i]].elastic)
+      all[static_cast<std::size_t>(part[i])].push_back(static_cast<std::uint32_t>(i));
   for (auto& body : all)
     if (!body.empty()) bodies_.push_back(std::move(body));
 }
@@ -98,12 +104,14 @@ RigidMotion RigidBodies<Dim>::motion(const World<Dim>& world, std::size_t body) 
 }
 
 template <int Dim>
-void RigidBodies<Dim>::advance(ParticleSet<Dim>& set, const std::vector<std::uint32_t>& particles, RigidMotion m, double time) {
+void RigidBodies<Dim>::advance(ParticleSet<Dim>& set, const std::vector<std::uint32_t>& particles,
+                               RigidMotion m, double time) {
   auto& x = set.vector(fields::position);
   auto& v = set.vector(fields::velocity);
   Vec3 turning = m.turning(Dim);
   const double angle = turning.norm() * time;
-  const Mat3 turn = angle > 0 ? Eigen::AngleAxisd(angle, turning.normalized()).toRotationMatrix() : Mat3::Identity();
+  const Mat3 turn = angle > 0 ? Eigen::AngleAxisd(angle, turning.normalized()).toRotationMatrix()
+                              : Mat3::Identity();
   m.inertia = turn * m.inertia * turn.transpose();
   turning = m.turning(Dim);
   for (const Index i : particles) {

@@ -9,7 +9,8 @@ template <int Dim>
 class RigidForces final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"rigid_forces", Stage::solid_force, "Eq. 65", "starts the sum of forces on particles of rigid solids", false};
+    return {"rigid_forces", Stage::solid_force, "Eq. 65",
+            "starts the sum of forces on particles of rigid solids", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     Binding<Dim> binding = bind_solids<RigidForces>(world, true);
@@ -17,7 +18,9 @@ class RigidForces final : public Effect<Dim> {
     std::erase_if(binding.effects, [&](const auto& e) {
       for (std::size_t b = 0; b < world.model().bodies.size(); ++b) {
         const SolidMaterial* m = solid_of(world.model(), world.model().bodies[b]);
-        if (m && !m->rigid() && solid_set_of(world.model(), b) == static_cast<const RigidForces&>(*e).set_) return true;
+        if (m && !m->rigid() &&
+            solid_set_of(world.model(), b) == static_cast<const RigidForces&>(*e).set_)
+          return true;
       }
       return false;
     });

@@ -8,13 +8,17 @@
 namespace sphgeo {
 namespace {
 
-/// Rigid solids at the end of their step: the forces on their particles change the velocity and the angular momentum of
-/// each body, which then moves to the end (as Eqs. 100, 101 do with elastic ones).
+/// Rigid solids at the end of their step: the forces on their particles change the velocity and the
+/// angular momentum of each body, which then moves to the end (as Eqs. 100, 101 do with elastic
+/// ones).
 template <int Dim>
 class RigidKick final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"rigid_kick", Stage::solid_kick, "Eqs. 94, 95, 100, 101", "velocity, turning and place of rigid solids at the end of their step; bound of their clock", false};
+    return {"rigid_kick", Stage::solid_kick, "Eqs. 94, 95, 100, 101",
+            "velocity, turning and place of rigid solids at the end of their step; bound of their "
+            "clock",
+            false};
   }
   static Binding<Dim> bind(const World<Dim>& world) { return bind_solids<RigidKick>(world, true); }
 
@@ -23,20 +27,25 @@ class RigidKick final : public Effect<Dim> {
 
   std::string acts_on() const override { return set_name(); }
   Needs needs() const override {
-    return {{{set_name(), &fields::acceleration_sum, Access::read}, {set_name(), &fields::mass, Access::read},
-             {set_name(), &fields::position, Access::update}, {set_name(), &fields::velocity, Access::update},
-             {set_name(), &fields::acceleration, Access::update}}, {}};
+    return {{{set_name(), &fields::acceleration_sum, Access::read},
+             {set_name(), &fields::mass, Access::read},
+             {set_name(), &fields::position, Access::update},
+             {set_name(), &fields::velocity, Access::update},
+             {set_name(), &fields::acceleration, Access::update}},
+            {}};
   }
 
   void apply(World<Dim>& world) override {
     bodies_.find(world);
     ParticleSet<Dim>& set = world.set(set_name());
-    parallel_blocks(static_cast<Index>(bodies_.size()), 1, [&](Index b, Index, Index) { kick(world, set, static_cast<std::size_t>(b)); });
+    parallel_blocks(static_cast<Index>(bodies_.size()), 1,
+                    [&](Index b, Index, Index) { kick(world, set, static_cast<std::size_t>(b)); });
   }
 
   void prepare(World<Dim>& world) override {
     for (std::size_t b = 0; b < world.model().bodies.size(); ++b)
-      if (const SolidMaterial* m = solid_of(world.model(), world.model().bodies[b]); m && m->rigid() && solid_set_of(world.model(), b) == set_name())
+      if (const SolidMaterial* m = solid_of(world.model(), world.model().bodies[b]);
+          m && m->rigid() && solid_set_of(world.model(), b) == set_name())
         sound_ = std::max(sound_, std::sqrt(m->contact_stiffness() / m->density));
   }
 
@@ -45,8 +54,10 @@ class RigidKick final : public Effect<Dim> {
     const Numerics& n = world.model().numerics;
     const double h = set.smoothing_length();
     const auto& v = set.vector(fields::velocity);
-    const double speed = std::sqrt(block_max(set.size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
-    // No wave runs in it: what its step must resolve is a contact, as stiff as a solid of that speed of sound.
+    const double speed = std::sqrt(block_max(
+        set.size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
+    // No wave runs in it: what its step must resolve is a contact, as stiff as a solid of that
+    // speed of sound.
     const double step = n.cfl_solid * h / (sound_ + speed);
     limits.note_speed(set_name(), speed / sound_);
     limits.solid = std::min(limits.solid, step);
@@ -54,7 +65,8 @@ class RigidKick final : public Effect<Dim> {
     if (!beside_) beside_ = step_beside_light_solids(world, set_name());
     limits.lower_acoustic(*beside_, "a solid lighter than what touches it");
     limits.advection = std::min(limits.advection, n.cfl_advection * h / std::max(speed, 1e-300));
-    if (!world.find("water") && !world.find("soil")) limits.advection = std::min(limits.advection, n.advection_ratio_max * step);
+    if (!world.find("water") && !world.find("soil"))
+      limits.advection = std::min(limits.advection, n.advection_ratio_max * step);
   }
   std::size_t bytes() const override { return bodies_.bytes(); }
 
@@ -67,7 +79,8 @@ class RigidKick final : public Effect<Dim> {
     const auto& v = set.vector(fields::velocity);
     const auto& m = set.scalar(fields::mass);
     const auto& sum = set.vector(fields::acceleration_sum);
-    const Field<Vec<Dim>>* fluid = set.has(fields::fluid_force) ? &set.vector(fields::fluid_force) : nullptr;
+    const Field<Vec<Dim>>* fluid =
+        set.has(fields::fluid_force) ? &set.vector(fields::fluid_force) : nullptr;
     auto& mean_a = set.vector(fields::acceleration);
     const auto& particles = bodies_.particles(body);
 
@@ -89,7 +102,7 @@ class RigidKick final : public Effect<Dim> {
 
   RigidBodies<Dim> bodies_;
   mutable std::optional<double> beside_;  // bound of the acoustic step, s
-  double sound_ = 0;  // of the stiffest contact, m/s
+  double sound_ = 0;                      // of the stiffest contact, m/s
 };
 
 const RegisterEffect<RigidKick> registered;

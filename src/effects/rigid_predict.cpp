@@ -9,16 +9,22 @@ template <int Dim>
 class RigidPredict final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"rigid_predict", Stage::solid_predict, "Eq. 99", "places of rigid solids at the middle of their step", false};
+    return {"rigid_predict", Stage::solid_predict, "Eq. 99",
+            "places of rigid solids at the middle of their step", false};
   }
-  static Binding<Dim> bind(const World<Dim>& world) { return bind_solids<RigidPredict>(world, true); }
+  static Binding<Dim> bind(const World<Dim>& world) {
+    return bind_solids<RigidPredict>(world, true);
+  }
 
   explicit RigidPredict(std::string set) : bodies_(std::move(set)) {}
   const std::string& set_name() const { return bodies_.set_name(); }
 
   std::string acts_on() const override { return set_name(); }
   Needs needs() const override {
-    return {{{set_name(), &fields::mass, Access::read}, {set_name(), &fields::position, Access::update}, {set_name(), &fields::velocity, Access::update}}, {}};
+    return {{{set_name(), &fields::mass, Access::read},
+             {set_name(), &fields::position, Access::update},
+             {set_name(), &fields::velocity, Access::update}},
+            {}};
   }
   void apply(World<Dim>& world) override {
     bodies_.find(world);

@@ -8,7 +8,8 @@
 
 namespace sphgeo {
 
-/// The fields of a set of solids that its skin and what touches it need: lookups by name cost more than the work.
+/// The fields of a set of solids that its skin and what touches it need: lookups by name cost more
+/// than the work.
 template <int Dim>
 struct SolidFields {
   Field<Vec<Dim>>&position, &velocity, &reference_position;
@@ -18,9 +19,15 @@ struct SolidFields {
   double smoothing_length;
 
   explicit SolidFields(ParticleSet<Dim>& s)
-      : position(s.vector(fields::position)), velocity(s.vector(fields::velocity)), reference_position(s.vector(fields::reference_position)),
-        mass(s.scalar(fields::mass)), reference_volume(s.scalar(fields::reference_volume)), part(s.tag(fields::part)),
-        clamp(s.tag(fields::clamp)), acceleration_sum(s.has(fields::acceleration_sum) ? &s.vector(fields::acceleration_sum) : nullptr),
+      : position(s.vector(fields::position)),
+        velocity(s.vector(fields::velocity)),
+        reference_position(s.vector(fields::reference_position)),
+        mass(s.scalar(fields::mass)),
+        reference_volume(s.scalar(fields::reference_volume)),
+        part(s.tag(fields::part)),
+        clamp(s.tag(fields::clamp)),
+        acceleration_sum(s.has(fields::acceleration_sum) ? &s.vector(fields::acceleration_sum)
+                                                         : nullptr),
         smoothing_length(s.smoothing_length()) {}
 };
 
@@ -31,8 +38,8 @@ struct SolidParticle {
   Index i;
 };
 
-/// Which particle of which solid each particle of the skin follows. Solids keep their order, the skin is sorted at every
-/// rearrangement.
+/// Which particle of which solid each particle of the skin follows. Solids keep their order, the
+/// skin is sorted at every rearrangement.
 template <int Dim>
 class SkinMap {
  public:
@@ -57,7 +64,8 @@ void SkinMap<Dim>::update(const World<Dim>& world) {
       ParticleSet<Dim>& set = world.set(name);
       sets_.push_back(std::make_unique<SolidFields<Dim>>(set));
       auto& places = place_of_id_.emplace_back(static_cast<std::size_t>(set.size()));
-      for (Index i = 0; i < set.size(); ++i) places[static_cast<std::size_t>(set.ids()[i])] = static_cast<std::uint32_t>(i);
+      for (Index i = 0; i < set.size(); ++i)
+        places[static_cast<std::size_t>(set.ids()[i])] = static_cast<std::uint32_t>(i);
     }
   const ParticleSet<Dim>& skin = world.set("skin");
   const auto& source = skin.tag(fields::source);
@@ -65,7 +73,8 @@ void SkinMap<Dim>::update(const World<Dim>& world) {
   rows_.resize(static_cast<std::size_t>(skin.size()));
   for (Index k = 0; k < skin.size(); ++k) {
     const auto n = static_cast<std::size_t>(number[k]);
-    rows_[static_cast<std::size_t>(k)] = {sets_[n].get(), static_cast<Index>(place_of_id_[n][static_cast<std::size_t>(source[k])])};
+    rows_[static_cast<std::size_t>(k)] = {
+        sets_[n].get(), static_cast<Index>(place_of_id_[n][static_cast<std::size_t>(source[k])])};
   }
 }
 

@@ -7,27 +7,33 @@ namespace {
 
 /// Takes the skin where its solids are at the end of the acoustic step.
 ///
-/// Eq. 95 gives water and soil the velocity averaged over the steps of the solids. Their own density follows from velocities at both ends of
-/// the step (Eqs. 96 to 98); with an average beside them the surface is half a step late, and what is lighter than
-/// the water around it is thrown about by that (see light_solids.h).
+/// Eq. 95 gives water and soil the velocity averaged over the steps of the solids. Their own
+/// density follows from velocities at both ends of the step (Eqs. 96 to 98); with an average beside
+/// them the surface is half a step late, and what is lighter than the water around it is thrown
+/// about by that (see light_solids.h).
 template <int Dim>
 class SkinFollow final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"skin_follow", Stage::solid_finish, "Eq. 95", "place and velocity of the surface of solids", false};
+    return {"skin_follow", Stage::solid_finish, "Eq. 95",
+            "place and velocity of the surface of solids", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("skin")) return {"no solid can meet anything"};
     return {std::make_unique<SkinFollow>(world), "solids can meet something"};
   }
 
-  explicit SkinFollow(const World<Dim>& world) : solids_(solid_sets(world)), seen_(world.find("water") || world.find("soil")) {}
+  explicit SkinFollow(const World<Dim>& world)
+      : solids_(solid_sets(world)), seen_(world.find("water") || world.find("soil")) {}
 
   std::string acts_on() const override { return "skin"; }
   Needs needs() const override {
-    Needs n{{{"skin", &fields::position, Access::update}, {"skin", &fields::velocity, Access::update}}, {}};
+    Needs n{
+        {{"skin", &fields::position, Access::update}, {"skin", &fields::velocity, Access::update}},
+        {}};
     for (const std::string& set : solids_)
-      for (const FieldSpec* f : {&fields::position, &fields::velocity}) n.fields.push_back({set, f, Access::read});
+      for (const FieldSpec* f : {&fields::position, &fields::velocity})
+        n.fields.push_back({set, f, Access::read});
     return n;
   }
 

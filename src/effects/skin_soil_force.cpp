@@ -4,7 +4,8 @@
 namespace sphgeo {
 namespace {
 
-/// Force of soil on solids: the reaction to what soil_wall_force does, by the same pair function at the same moment.
+/// Force of soil on solids: the reaction to what soil_wall_force does, by the same pair function at
+/// the same moment.
 template <int Dim>
 class SkinSoilForce final : public Effect<Dim> {
  public:
@@ -12,14 +13,17 @@ class SkinSoilForce final : public Effect<Dim> {
     return {"skin_soil_force", Stage::force, "Eqs. 70, 90, 95", "force of soil on solids", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    if (!world.find("skin") || !world.find("soil")) return {"there are no solids, or there is no soil"};
+    if (!world.find("skin") || !world.find("soil"))
+      return {"there are no solids, or there is no soil"};
     if (!SoilParts(world).deformable) return {"no skeleton is deformable"};
     return {std::make_unique<SkinSoilForce>(), "there are solids and soil"};
   }
 
   std::string acts_on() const override { return "solids near soil"; }
   Needs needs() const override {
-    return {{{"soil", &fields::stress, Access::read}, {"soil", &fields::volume, Access::read}, {"skin", &fields::volume, Access::read},
+    return {{{"soil", &fields::stress, Access::read},
+             {"soil", &fields::volume, Access::read},
+             {"skin", &fields::volume, Access::read},
              {"skin", &fields::soil_force, Access::write}},
             {{"skin", "soil"}, {"soil", "skin"}}};
   }
@@ -31,8 +35,11 @@ class SkinSoilForce final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       gather<SoilForceOnWall<Dim>::template Sums>(
-          world.list("skin", "soil"), with(world.records("skin", 0).template get<T>(), world.records("skin", 1).template get<T>()),
-          stress_records<T, soil_records<Dim>>(world), pair, [&](Index i, const auto& sum) { force[i] = to_vec(sum.force); });
+          world.list("skin", "soil"),
+          with(world.records("skin", 0).template get<T>(),
+               world.records("skin", 1).template get<T>()),
+          stress_records<T, soil_records<Dim>>(world), pair,
+          [&](Index i, const auto& sum) { force[i] = to_vec(sum.force); });
     });
   }
 };

@@ -5,17 +5,20 @@
 namespace sphgeo {
 namespace {
 
-/// The surface of solids as water and soil see it: normals of the bodies as they are now, by F^-T n (line 12 of Algorithm
-/// 2; Eq. 71 gives their direction at rest, here taken from the shape), and what wall pairs need.
+/// The surface of solids as water and soil see it: normals of the bodies as they are now, by F^-T n
+/// (line 12 of Algorithm 2; Eq. 71 gives their direction at rest, here taken from the shape), and
+/// what wall pairs need.
 template <int Dim>
 class SkinState final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"skin_state", Stage::reinitialize, "Algorithm 2 line 12, Eq. 71", "normals of solids as they are deformed now, for water and soil", false};
+    return {"skin_state", Stage::reinitialize, "Algorithm 2 line 12, Eq. 71",
+            "normals of solids as they are deformed now, for water and soil", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("skin")) return {"no solid can meet anything"};
-    if (!world.find("water") && !world.find("soil")) return {"there is no water and no soil around the solids"};
+    if (!world.find("water") && !world.find("soil"))
+      return {"there is no water and no soil around the solids"};
     return {std::make_unique<SkinState>(world), "there are solids in water or soil"};
   }
 
@@ -25,14 +28,16 @@ class SkinState final : public Effect<Dim> {
       solids_.push_back(set);
       deformations_.emplace_back(set);
       bool elastic = false;
-      for (std::size_t b = 0; b < parts.of.size(); ++b) elastic = elastic || (parts.of[b].elastic && solid_set_of(world.model(), b) == set);
+      for (std::size_t b = 0; b < parts.of.size(); ++b)
+        elastic = elastic || (parts.of[b].elastic && solid_set_of(world.model(), b) == set);
       elastic_.push_back(elastic);
     }
   }
 
   std::string acts_on() const override { return "skin"; }
   Needs needs() const override {
-    Needs n{{{"skin", &fields::volume, Access::write}, {"skin", &fields::normal, Access::update}}, {}};
+    Needs n{{{"skin", &fields::volume, Access::write}, {"skin", &fields::normal, Access::update}},
+            {}};
     for (std::size_t k = 0; k < solids_.size(); ++k)
       if (elastic_[k]) {
         n.fields.push_back({solids_[k], &fields::reference_correction, Access::read});
@@ -49,9 +54,12 @@ class SkinState final : public Effect<Dim> {
     map_.update(world);
     ParticleSet<Dim>& skin = world.set("skin");
     rows_.resize(solids_.size());
-    for (std::size_t k = 0; k < solids_.size(); ++k) rows_[k].assign(static_cast<std::size_t>(world.set(solids_[k]).size()), -1);
+    for (std::size_t k = 0; k < solids_.size(); ++k)
+      rows_[k].assign(static_cast<std::size_t>(world.set(solids_[k]).size()), -1);
     const auto& number = skin.tag(fields::source_set);
-    for (Index s = 0; s < skin.size(); ++s) rows_[static_cast<std::size_t>(number[s])][static_cast<std::size_t>(map_.at(s).i)] = static_cast<std::int32_t>(s);
+    for (Index s = 0; s < skin.size(); ++s)
+      rows_[static_cast<std::size_t>(number[s])][static_cast<std::size_t>(map_.at(s).i)] =
+          static_cast<std::int32_t>(s);
     for (std::size_t k = 0; k < solids_.size(); ++k) turn_normals(world, k);
     auto& volume = skin.scalar(fields::volume);
     const auto& at_rest = skin.scalar(fields::reference_volume);
@@ -88,7 +96,8 @@ class SkinState final : public Effect<Dim> {
       world.with_pair_precision([&](auto number) {
         using T = decltype(number);
         auto& records = world.records(solids_[k], 0).template get<T>();
-        parallel_for(set.size(), [&](Index i) { deformation.pack(records, i, x[i], reference[i], part[i]); });
+        parallel_for(set.size(),
+                     [&](Index i) { deformation.pack(records, i, x[i], reference[i], part[i]); });
       });
       deformation.gather_gradients(world, turn);
     }
@@ -101,7 +110,8 @@ class SkinState final : public Effect<Dim> {
   std::vector<std::string> solids_;
   std::vector<bool> elastic_;
   std::vector<Deformation<Dim>> deformations_;
-  std::vector<std::vector<std::int32_t>> rows_;  // by set and particle: its row in the skin, -1 inside of the body
+  std::vector<std::vector<std::int32_t>>
+      rows_;  // by set and particle: its row in the skin, -1 inside of the body
   SkinMap<Dim> map_;
 };
 

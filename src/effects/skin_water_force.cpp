@@ -4,29 +4,36 @@
 namespace sphgeo {
 namespace {
 
-/// Force of water on solids: the reaction to what water_wall_force does, by the same pair function at the same moment.
+/// Force of water on solids: the reaction to what water_wall_force does, by the same pair function
+/// at the same moment.
 template <int Dim>
 class SkinWaterForce final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"skin_water_force", Stage::force, "Eqs. 75-77, 95", "pressure and friction of water on solids", false};
+    return {"skin_water_force", Stage::force, "Eqs. 75-77, 95",
+            "pressure and friction of water on solids", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    if (!world.find("skin") || !world.find("water")) return {"there are no solids, or there is no water"};
+    if (!world.find("skin") || !world.find("water"))
+      return {"there are no solids, or there is no water"};
     return {std::make_unique<SkinWaterForce>(), "there are solids and water"};
   }
 
   std::string acts_on() const override { return "solids near water"; }
   Needs needs() const override {
-    return {{{"water", &fields::pressure, Access::read}, {"water", &fields::acceleration, Access::read}, {"water", &fields::density, Access::read},
-             {"skin", &fields::volume, Access::read}, {"skin", &fields::water_force, Access::write}},
+    return {{{"water", &fields::pressure, Access::read},
+             {"water", &fields::acceleration, Access::read},
+             {"water", &fields::density, Access::read},
+             {"skin", &fields::volume, Access::read},
+             {"skin", &fields::water_force, Access::write}},
             {{"skin", "water"}, {"water", "skin"}}};
   }
   void prepare(World<Dim>& world) override { world.records("water", 1); }
 
   void apply(World<Dim>& world) override {
     const ParticleSet<Dim>& water = world.set("water");
-    const WaterForceOnWall<Dim> pair{WallPair<Dim>(WaterConstants::of(world), water.smoothing_length(), water.spacing())};
+    const WaterForceOnWall<Dim> pair{
+        WallPair<Dim>(WaterConstants::of(world), water.smoothing_length(), water.spacing())};
     auto& force = world.set("skin").vector(fields::water_force);
     const Field<double>* scale = gradient_scale(world);
     parallel_for(force.size(), [&](Index i) { force[i].setZero(); });
@@ -37,10 +44,14 @@ class SkinWaterForce final : public Effect<Dim> {
       pack_water_pull(world, around, second);
       // The volume in the records bears this factor once already.
       for (const auto& block : around.blocks())
-        for (const std::uint32_t i : block.targets) second[i][pair.scale - record_size] = static_cast<T>(scale ? (*scale)[i] : 1.0);
+        for (const std::uint32_t i : block.targets)
+          second[i][pair.scale - record_size] = static_cast<T>(scale ? (*scale)[i] : 1.0);
       gather<WaterForceOnWall<Dim>::template Sums>(
-          world.list("skin", "water"), with(world.records("skin", 0).template get<T>(), world.records("skin", 1).template get<T>()),
-          with(world.records("water", 0).template get<T>(), second), pair, [&](Index i, const auto& sum) { force[i] = to_vec(sum.force); });
+          world.list("skin", "water"),
+          with(world.records("skin", 0).template get<T>(),
+               world.records("skin", 1).template get<T>()),
+          with(world.records("water", 0).template get<T>(), second), pair,
+          [&](Index i, const auto& sum) { force[i] = to_vec(sum.force); });
     });
   }
 };

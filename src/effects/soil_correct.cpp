@@ -9,7 +9,8 @@ template <int Dim>
 class SoilCorrect final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"soil_correct", Stage::correct, "Eq. 98", "volume fraction of soil at the end of the step", false};
+    return {"soil_correct", Stage::correct, "Eq. 98",
+            "volume fraction of soil at the end of the step", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
@@ -18,7 +19,9 @@ class SoilCorrect final : public Effect<Dim> {
 
   std::string acts_on() const override { return "soil"; }
   Needs needs() const override {
-    return {{{"soil", &fields::volume_fraction, Access::update}, {"soil", &fields::volume_fraction_rate, Access::read}}, {}};
+    return {{{"soil", &fields::volume_fraction, Access::update},
+             {"soil", &fields::volume_fraction_rate, Access::read}},
+            {}};
   }
   void prepare(World<Dim>& world) override { soil_ = &world.set("soil"); }
   void apply(World<Dim>& world) override {

@@ -7,13 +7,14 @@
 namespace sphgeo {
 namespace {
 
-/// Velocity and place at the end of the acoustic step (Eqs. 97, 98), and the step bounds of the soil
-/// (Eqs. 91, 92). A fixed skeleton stays, a prescribed one follows the velocity of its body.
+/// Velocity and place at the end of the acoustic step (Eqs. 97, 98), and the step bounds of the
+/// soil (Eqs. 91, 92). A fixed skeleton stays, a prescribed one follows the velocity of its body.
 template <int Dim>
 class SoilKick final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"soil_kick", Stage::kick, "Eqs. 91, 92, 97, 98", "velocity and place of soil at the end of the step; bounds of both clocks", false};
+    return {"soil_kick", Stage::kick, "Eqs. 91, 92, 97, 98",
+            "velocity and place of soil at the end of the step; bounds of both clocks", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
@@ -70,13 +71,17 @@ class SoilKick final : public Effect<Dim> {
     if (!parts.deformable && world.find("water")) return;  // at rest or led: no wave runs in it
     const double sound = parts.deformable ? parts.fastest_wave : parts.first.sound_speed;
     const auto& v = soil_->vector(fields::velocity);
-    const double speed = std::sqrt(block_max(soil_->size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
+    const double speed = std::sqrt(block_max(
+        soil_->size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
     limits.note_speed("soil", speed / sound);
-    // Eq. 92, with the compression wave: it is faster than the c_0 of Eq. 53, up to 1.7 times at nu = 0.
+    // Eq. 92, with the compression wave: it is faster than the c_0 of Eq. 53, up to 1.7 times at nu
+    // = 0.
     const double acoustic = n.cfl_acoustic * h / (sound + speed);
     limits.lower_acoustic(acoustic, "waves in soil");
     // Eq. 91; at rest the acoustic step bounds it, as for water.
-    limits.advection = std::min(limits.advection, std::min(n.advection_ratio_max * acoustic, n.cfl_advection * h / std::max(speed, 1e-300)));
+    limits.advection = std::min(
+        limits.advection,
+        std::min(n.advection_ratio_max * acoustic, n.cfl_advection * h / std::max(speed, 1e-300)));
   }
 
  private:
@@ -84,7 +89,8 @@ class SoilKick final : public Effect<Dim> {
   static void follow(const Body& body, double dt, Vec<Dim>& x, Vec<Dim>& v, Vec<Dim>& a) {
     const auto field = [&](const Vec<Dim>& at) {
       const Vec3 p = to_space<Dim>(at);
-      return to_scene<Dim>(Vec3(body.velocity[0](p, 0), body.velocity[1](p, 0), body.velocity[2](p, 0)));
+      return to_scene<Dim>(
+          Vec3(body.velocity[0](p, 0), body.velocity[1](p, 0), body.velocity[2](p, 0)));
     };
     const Vec<Dim> start = x - 0.5 * dt * v;
     x = start + dt * field(x);

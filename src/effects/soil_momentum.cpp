@@ -6,9 +6,10 @@ namespace {
 
 /// Stress between two soil particles by the Riemann flux (Eqs. 49 to 54).
 ///
-/// Eq. 49 prints sigma_i + sigma_j. Here each stress comes with the correction B of its particle, by which Eq. 55 is made exact
-/// for linear velocities: only then does the work of these forces equal that of the stress on the velocity gradient, pair
-/// by pair. With the correction in Eq. 55 alone, energy grows without bound near every surface.
+/// Eq. 49 prints sigma_i + sigma_j. Here each stress comes with the correction B of its particle,
+/// by which Eq. 55 is made exact for linear velocities: only then does the work of these forces
+/// equal that of the stress on the velocity gradient, pair by pair. With the correction in Eq. 55
+/// alone, energy grows without bound near every surface.
 template <int Dim, bool Uniform>
 struct StressPair {
   Kernel<Dim> kernel;
@@ -43,7 +44,8 @@ struct StressPair {
       // The null record that pads the lists has no impedance, but i has.
       const T share = T(1) / (z_i + z_j);
       const T beta = min(T(limiter) * (i[density<Dim>] + j[density<Dim>]) * share * closing, T(1));
-      excess = (z_i - z_j) * share * (j[pressure<Dim>] - i[pressure<Dim>]) + T(2) * beta * z_i * z_j * share * closing;
+      excess = (z_i - z_j) * share * (j[pressure<Dim>] - i[pressure<Dim>]) +
+               T(2) * beta * z_i * z_j * share * closing;
     }
     sum.force += gradient * (times(two_stress, r) - excess * r);
   }
@@ -54,7 +56,8 @@ template <int Dim>
 class SoilMomentum final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"soil_momentum", Stage::force, "Eqs. 49-54", "stress between soil particles (Riemann)", false};
+    return {"soil_momentum", Stage::force, "Eqs. 49-54", "stress between soil particles (Riemann)",
+            false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
@@ -64,9 +67,11 @@ class SoilMomentum final : public Effect<Dim> {
 
   std::string acts_on() const override { return "soil"; }
   Needs needs() const override {
-    return {{{"soil", &fields::volume, Access::read}, {"soil", &fields::stress, Access::read},
+    return {{{"soil", &fields::volume, Access::read},
+             {"soil", &fields::stress, Access::read},
              {"soil", &fields::mass, Access::read},
-             {"soil", &fields::position, Access::read}, {"soil", &fields::acceleration_sum, Access::write}},
+             {"soil", &fields::position, Access::read},
+             {"soil", &fields::acceleration_sum, Access::write}},
             {{"soil", "soil"}}};
   }
 
@@ -82,7 +87,8 @@ class SoilMomentum final : public Effect<Dim> {
   template <bool Uniform>
   void run(World<Dim>& world, const SoilParts& parts) {
     using Pair = StressPair<Dim, Uniform>;
-    const Pair pair{soil_kernel(*soil_), parts.first.impedance(), 1 / parts.first.sound_speed, soil_limiter(world)};
+    const Pair pair{soil_kernel(*soil_), parts.first.impedance(), 1 / parts.first.sound_speed,
+                    soil_limiter(world)};
     auto& sum_of_forces = soil_->vector(fields::acceleration_sum);
     const auto& x = soil_->vector(fields::position);
     const auto& m = soil_->scalar(fields::mass);
@@ -90,9 +96,10 @@ class SoilMomentum final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       const auto records = stress_records<T, Pair::records>(world);
-      gather<Pair::template Sums>(world.list("soil", "soil"), records, records, pair, [&](Index i, const auto& sum) {
-        sum_of_forces[i] = world.pull(x[i]) + to_vec(sum.force) * (volume[i] / m[i]);
-      });
+      gather<Pair::template Sums>(
+          world.list("soil", "soil"), records, records, pair, [&](Index i, const auto& sum) {
+            sum_of_forces[i] = world.pull(x[i]) + to_vec(sum.force) * (volume[i] / m[i]);
+          });
     });
   }
 

@@ -13,19 +13,22 @@ struct WaterMean {
     T weight{}, pressure{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j, const LaneVec<Dim, T>&, const T& r2) const {
+  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j,
+                  const LaneVec<Dim, T>&, const T& r2) const {
     const T w = kernel.w(r2) * j[water_slot::volume];
     sum.weight += w;
     sum.pressure += w * j[water_slot::pressure];
   }
 };
 
-/// Pore pressure at the soil (Eq. 47), for whoever looks at it: the force on the soil does not need it (see PorePressure).
+/// Pore pressure at the soil (Eq. 47), for whoever looks at it: the force on the soil does not need
+/// it (see PorePressure).
 template <int Dim>
 class SoilPorePressure final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"soil_pore_pressure", Stage::observe, "Eq. 47", "pressure of the water at soil particles at the time of a probe or frame", true};
+    return {"soil_pore_pressure", Stage::observe, "Eq. 47",
+            "pressure of the water at soil particles at the time of a probe or frame", true};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!has_pore_water(world)) return {"there is no water, or there is no soil"};
@@ -34,7 +37,9 @@ class SoilPorePressure final : public Effect<Dim> {
 
   std::string acts_on() const override { return "soil near water"; }
   Needs needs() const override {
-    return {{{"water", &fields::pressure, Access::read}, {"water", &fields::volume, Access::read}, {"soil", &fields::pore_pressure, Access::write}},
+    return {{{"water", &fields::pressure, Access::read},
+             {"water", &fields::volume, Access::read},
+             {"soil", &fields::pore_pressure, Access::write}},
             {{"soil", "water"}}};
   }
 
@@ -49,10 +54,12 @@ class SoilPorePressure final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       // The first records: between two steps they hold the pressure and volume of now.
-      gather<WaterMean<Dim>::template Sums>(world.list("soil", "water"), world.records("soil").template get<T>(), world.records("water").template get<T>(),
-                                            WaterMean<Dim>{Kernel<Dim>(water_->smoothing_length())}, [&](Index k, const auto& s) {
-                                              if (s.weight > 0) p[k] = s.pressure / s.weight;
-                                            });
+      gather<WaterMean<Dim>::template Sums>(
+          world.list("soil", "water"), world.records("soil").template get<T>(),
+          world.records("water").template get<T>(),
+          WaterMean<Dim>{Kernel<Dim>(water_->smoothing_length())}, [&](Index k, const auto& s) {
+            if (s.weight > 0) p[k] = s.pressure / s.weight;
+          });
     });
   }
 

@@ -10,7 +10,8 @@ template <int Dim>
 class SoilPredict final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"soil_predict", Stage::predict, "Eqs. 1, 96", "volume fraction, place and volume of soil at the middle of the step", false};
+    return {"soil_predict", Stage::predict, "Eqs. 1, 96",
+            "volume fraction, place and volume of soil at the middle of the step", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
@@ -24,7 +25,8 @@ class SoilPredict final : public Effect<Dim> {
              {"soil", &fields::volume_fraction_rate, Access::read},
              {"soil", &fields::velocity, Access::read},
              {"soil", &fields::mass, Access::read},
-             {"soil", &fields::stress, Access::read}, {"soil", &fields::gradient_correction, Access::read},
+             {"soil", &fields::stress, Access::read},
+             {"soil", &fields::gradient_correction, Access::read},
              {"soil", &fields::volume, Access::write}},
             {}};
   }
@@ -60,7 +62,8 @@ class SoilPredict final : public Effect<Dim> {
   }
 
   void bounds(const World<Dim>&, std::vector<FieldBound>& watched) const override {
-    watched.push_back({"soil", &fields::volume_fraction, 0.0, 4.0, "soil compressed by pressures of the order of its bulk modulus: bodies that "
+    watched.push_back({"soil", &fields::volume_fraction, 0.0, 4.0,
+                       "soil compressed by pressures of the order of its bulk modulus: bodies that "
                        "start inside each other, or a youngs_modulus that is too low"});
   }
 

@@ -3,23 +3,24 @@
 #include <cmath>
 
 #include "effects/effect.h"
-#include "effects/wall_sets.h"
 #include "effects/soil_phase.h"
 #include "effects/wall_pair.h"
+#include "effects/wall_sets.h"
 
 namespace sphgeo {
 namespace {
 
-/// Where the soil's particles lie: number density, and for the transport its gradient and the moment.
+/// Where the soil's particles lie: number density, and for the transport its gradient and the
+/// moment.
 template <int Dim, bool Transport>
 struct SoilArrangement {
   Kernel<Dim> kernel;
 
   template <class T>
   struct Sums {
-    T number{};                               ///< sum of W V at rest
+    T number{};                                  ///< sum of W V at rest
     LaneVec<Transport ? Dim : 1, T> gradient{};  ///< sum of grad W V
-    T divergence{};                           ///< sum of r . grad W V, minus Dim in the bulk
+    T divergence{};                              ///< sum of r . grad W V, minus Dim in the bulk
   };
 
   template <class T, int N, int M>
@@ -44,32 +45,39 @@ struct NearSurface {
     T share{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j, const LaneVec<Dim, T>&, const T& r2) const {
+  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j,
+                  const LaneVec<Dim, T>&, const T& r2) const {
     sum.share += kernel.w(r2) * j[soil_slot::volume] * j[soil_slot::scratch];
   }
 };
 
-/// Once per advection step: the volume fraction by summation (Algorithm 2, line 11), and for cohesive
-/// soil the transport displacement in its original form (Eq. 87).
+/// Once per advection step: the volume fraction by summation (Algorithm 2, line 11), and for
+/// cohesive soil the transport displacement in its original form (Eq. 87).
 template <int Dim>
 class SoilReinitialization final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"soil_reinitialization", Stage::reinitialize, "Algorithm 2 line 11, Eq. 87",
-            "volume fraction of soil by summation; transport displacement when the deck asks for it", false};
+    return {
+        "soil_reinitialization", Stage::reinitialize, "Algorithm 2 line 11, Eq. 87",
+        "volume fraction of soil by summation; transport displacement when the deck asks for it",
+        false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
     if (!SoilParts(world).deformable) return {"no skeleton is deformable"};
     const Numerics& n = world.model().numerics;
     if (n.volume_fraction_reinitialization == "none" && !n.transport_velocity_soil)
-      return {"numerics switches off both volume_fraction_reinitialization and transport_velocity_soil"};
+      return {
+          "numerics switches off both volume_fraction_reinitialization and "
+          "transport_velocity_soil"};
     return {std::make_unique<SoilReinitialization>(world),
-            n.transport_velocity_soil ? "there is soil; transport_velocity_soil is asked for" : "there is soil"};
+            n.transport_velocity_soil ? "there is soil; transport_velocity_soil is asked for"
+                                      : "there is soil"};
   }
 
   explicit SoilReinitialization(const World<Dim>& world)
-      : walls_(wall_sets(world)), transport_(world.model().numerics.transport_velocity_soil),
+      : walls_(wall_sets(world)),
+        transport_(world.model().numerics.transport_velocity_soil),
         sums_(world.model().numerics.volume_fraction_reinitialization == "summation") {}
 
   std::string acts_on() const override { return "soil"; }
@@ -116,7 +124,8 @@ class SoilReinitialization final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& records = world.records("soil").template get<T>();
-      parallel_for(soil_->size(), [&](Index i) { records[i][soil_slot::volume] = static_cast<T>(rest(i)); });
+      parallel_for(soil_->size(),
+                   [&](Index i) { records[i][soil_slot::volume] = static_cast<T>(rest(i)); });
       const auto keep = [&](Index i, const auto& s) {
         Around& a = around_[static_cast<std::size_t>(i)];
         a.number += s.number;
@@ -127,31 +136,34 @@ class SoilReinitialization final : public Effect<Dim> {
       };
       gather<Pair::template Sums>(world.list("soil", "soil"), records, records, pair, keep);
       for (const std::string& set : walls_)
-        gather<Pair::template Sums>(world.list("soil", set), records, world.records(set).template get<T>(), pair, keep);
+        gather<Pair::template Sums>(world.list("soil", set), records,
+                                    world.records(set).template get<T>(), pair, keep);
     });
     if (world.model().numerics.volume_fraction_reinitialization == "summation") {
       auto& n = soil_->scalar(fields::volume_fraction);
       auto& crowding = soil_->scalar(fields::crowding);
       const double self = Kernel<Dim>(soil_->smoothing_length()).w(0.0);
       // Of the neighborhood, the corner of a block has 1/4 in 2D, 1/8 in 3D.
-      const double alone = self * std::pow(soil_->spacing(), Dim) / lattice_, detached = alone + 0.8 / (1 << Dim) * (1 - alone);
+      const double alone = self * std::pow(soil_->spacing(), Dim) / lattice_,
+                   detached = alone + 0.8 / (1 << Dim) * (1 - alone);
       parallel_for(soil_->size(), [&](Index i) {
         crowding[i] = (around_[static_cast<std::size_t>(i)].number + self * rest(i)) / lattice_;
         const double summed = n0[i] * crowding[i];
-        // Grains that come apart leave the range of each other's kernels with the volume fraction they had, and would meet at that range
-        // again as if they touched. With fewer neighbors than at the corner of a block one is no part of a skeleton any more, and
-        // as loose as it looks.
+        // Grains that come apart leave the range of each other's kernels with the volume fraction
+        // they had, and would meet at that range again as if they touched. With fewer neighbors
+        // than at the corner of a block one is no part of a skeleton any more, and as loose as it
+        // looks.
         if (crowding[i] < detached) n[i] = std::min(n[i], summed);
-        // A sum that falls short is a surface or a splash: it keeps its volume fraction, up to the factor
-        // by which it exceeds that at rest, as the density of water does.
+        // A sum that falls short is a surface or a splash: it keeps its volume fraction, up to the
+        // factor by which it exceeds that at rest, as the density of water does.
         n[i] = summed + std::max(0.0, n[i] - summed) * n0[i] / n[i];
       });
     }
     if constexpr (Transport) shift(world);
   }
 
-  // Eq. 87 with the sign that leads away from crowded places. Particles whose kernel reaches the free
-  // surface stay: there the sum measures the cut kernel, not the arrangement (as for water).
+  // Eq. 87 with the sign that leads away from crowded places. Particles whose kernel reaches the
+  // free surface stay: there the sum measures the cut kernel, not the arrangement (as for water).
   void shift(World<Dim>& world) {
     const double h = soil_->smoothing_length();
     const double factor = 2 * world.model().numerics.transport_coefficient * h * h;
@@ -167,7 +179,8 @@ class SoilReinitialization final : public Effect<Dim> {
         records[i][soil_slot::scratch] = static_cast<T>(surface[i]);  // until predict packs again
       });
       gather<NearSurface<Dim>::template Sums>(
-          world.list("soil", "soil"), records, records, NearSurface<Dim>{Kernel<Dim>(h)}, [&](Index i, const auto& near) {
+          world.list("soil", "soil"), records, records, NearSurface<Dim>{Kernel<Dim>(h)},
+          [&](Index i, const auto& near) {
             if (surface[i] || near.share > 0 || !parts[part[i]].moves) return;
             x[i] -= factor * around_[static_cast<std::size_t>(i)].gradient;
           });

@@ -10,7 +10,8 @@ template <int Dim>
 class SoilState final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"soil_state", Stage::observe, "Eqs. 1, 52", "mean effective pressure and volume of soil at the time of a probe or frame", true};
+    return {"soil_state", Stage::observe, "Eqs. 1, 52",
+            "mean effective pressure and volume of soil at the time of a probe or frame", true};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
@@ -19,9 +20,14 @@ class SoilState final : public Effect<Dim> {
 
   std::string acts_on() const override { return "soil"; }
   Needs needs() const override {
-    return {{{"soil", &fields::volume_fraction, Access::read}, {"soil", &fields::mass, Access::read},
-             {"soil", &fields::stress, Access::read}, {"soil", &fields::gradient_correction, Access::read}, {"soil", &fields::velocity, Access::read},
-             {"soil", &fields::pressure, Access::write}, {"soil", &fields::volume, Access::write}}, {}};
+    return {{{"soil", &fields::volume_fraction, Access::read},
+             {"soil", &fields::mass, Access::read},
+             {"soil", &fields::stress, Access::read},
+             {"soil", &fields::gradient_correction, Access::read},
+             {"soil", &fields::velocity, Access::read},
+             {"soil", &fields::pressure, Access::write},
+             {"soil", &fields::volume, Access::write}},
+            {}};
   }
   void prepare(World<Dim>& world) override { soil_ = &world.set("soil"); }
   void apply(World<Dim>& world) override {

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "effects/effect.h"
-#include "effects/wall_sets.h"
 #include "effects/soil_wall_pair.h"
+#include "effects/wall_sets.h"
 
 namespace sphgeo {
 namespace {
@@ -13,12 +13,13 @@ template <int Dim>
 struct GradientSums {
   template <class T>
   struct Sums {
-    T gradient[Dim][Dim] = {};                ///< sum of (v_j - v_i) (x) grad W V
-    T moment[Dim * (Dim + 1) / 2] = {};       ///< sum of (r_j - r_i) (x) grad W V, upper half by rows
+    T gradient[Dim][Dim] = {};           ///< sum of (v_j - v_i) (x) grad W V
+    T moment[Dim * (Dim + 1) / 2] = {};  ///< sum of (r_j - r_i) (x) grad W V, upper half by rows
   };
 
   template <class T>
-  static void add(Sums<T>& sum, const LaneVec<Dim, T>& dv, const LaneVec<Dim, T>& r, const T& gradient) {
+  static void add(Sums<T>& sum, const LaneVec<Dim, T>& dv, const LaneVec<Dim, T>& r,
+                  const T& gradient) {
     const LaneVec<Dim, T> slope = gradient * r;
     int m = 0;
     for (int a = 0; a < Dim; ++a) {
@@ -32,8 +33,8 @@ template <int Dim>
 struct GradientPair {
   Kernel<Dim> kernel;
   template <class T>
-  void operator()(typename GradientSums<Dim>::template Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T>& j,
-                  const LaneVec<Dim, T>& r, const T& r2) const {
+  void operator()(typename GradientSums<Dim>::template Sums<T>& sum, const Record<Dim, T>& i,
+                  const Record<Dim, T>& j, const LaneVec<Dim, T>& r, const T& r2) const {
     using namespace soil_slot;
     const T gradient = kernel.dw_over_r(r2) * j[volume];
     GradientSums<Dim>::add(sum, j.vec(velocity) - i.vec(velocity), r, gradient);
@@ -44,39 +45,46 @@ template <int Dim>
 struct WallGradientPair {
   SoilWallPair<Dim> wall;
   template <class T>
-  void operator()(typename GradientSums<Dim>::template Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T, 2>& j,
-                  const LaneVec<Dim, T>& r, const T& r2) const {
-    // Mirrored velocities tell how the velocity changes across the wall, and nothing of how it changes along
-    // it, which would count as no change at all if the whole of r were used here.
+  void operator()(typename GradientSums<Dim>::template Sums<T>& sum, const Record<Dim, T>& i,
+                  const Record<Dim, T, 2>& j, const LaneVec<Dim, T>& r, const T& r2) const {
+    // Mirrored velocities tell how the velocity changes across the wall, and nothing of how it
+    // changes along it, which would count as no change at all if the whole of r were used here.
     const LaneVec<Dim, T> n = j.vec(wall_slot::normal);
     const T r_n = dot(r, n);
     GradientSums<Dim>::add(sum, SoilWallPair<Dim>::mirrored(i, j), r_n * n, wall.slope(j, r_n, r2));
   }
 };
 
-/// Stress of all soil particles over one step (Algorithm 1), after the velocity gradient (Eq. 55) and
-/// the rate of the volume fraction (Eq. 48), block by block.
+/// Stress of all soil particles over one step (Algorithm 1), after the velocity gradient (Eq. 55)
+/// and the rate of the volume fraction (Eq. 48), block by block.
 template <int Dim>
 class SoilStress final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"soil_stress", Stage::rate, "Eqs. 15-21, 48, 55", "velocity gradient, stress and rate of the volume fraction of soil", false};
+    return {"soil_stress", Stage::rate, "Eqs. 15-21, 48, 55",
+            "velocity gradient, stress and rate of the volume fraction of soil", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
     bool moves = false;
-    for (const SoilPart& p : SoilParts(world).of) moves = moves || (p.material && p.material->skeleton != "fixed");
+    for (const SoilPart& p : SoilParts(world).of)
+      moves = moves || (p.material && p.material->skeleton != "fixed");
     if (!moves) return {"every skeleton is fixed"};
     return {std::make_unique<SoilStress>(world), "there is soil that moves"};
   }
 
   explicit SoilStress(const World<Dim>& world)
-      : walls_(wall_sets(world)), wetted_(world.set("soil").has(fields::saturation)),
-        crowded_(SoilParts(world).deformable && world.model().numerics.volume_fraction_reinitialization == "summation") {}
+      : walls_(wall_sets(world)),
+        wetted_(world.set("soil").has(fields::saturation)),
+        crowded_(SoilParts(world).deformable &&
+                 world.model().numerics.volume_fraction_reinitialization == "summation") {}
 
-  std::string acts_on() const override { return !walls_.empty() ? "soil, also near walls" : "soil"; }
+  std::string acts_on() const override {
+    return !walls_.empty() ? "soil, also near walls" : "soil";
+  }
   Needs needs() const override {
-    Needs n{{{"soil", &fields::volume, Access::read}, {"soil", &fields::volume_fraction, Access::read},
+    Needs n{{{"soil", &fields::volume, Access::read},
+             {"soil", &fields::volume_fraction, Access::read},
              {"soil", &fields::initial_volume_fraction, Access::read},
              {"soil", &fields::velocity, Access::read},
              {"soil", &fields::stress, Access::update},
@@ -109,13 +117,15 @@ class SoilStress final : public Effect<Dim> {
     parallel_blocks(soil_->size(), block_size, [&](Index first, Index end, Index b) {
       std::array<Sums, block_size> sums{};
       const auto at = [&](Index i) -> Sums& { return sums[static_cast<std::size_t>(i - first)]; };
-      gather_block<GradientSums<Dim>::template Sums>(soil_list, b, records, records, GradientPair<Dim>{kernel},
+      gather_block<GradientSums<Dim>::template Sums>(soil_list, b, records, records,
+                                                     GradientPair<Dim>{kernel},
                                                      [&](Index i, const Sums& s) { at(i) = s; });
       for (const std::string& set : walls_)
         gather_block<GradientSums<Dim>::template Sums>(
             world.list("soil", set), b, records,
             with(world.records(set, 0).template get<T>(), world.records(set, 1).template get<T>()),
-            WallGradientPair<Dim>{SoilWallPair<Dim>(world, *soil_)}, [&](Index i, const Sums& s) { add(at(i), s); });
+            WallGradientPair<Dim>{SoilWallPair<Dim>(world, *soil_)},
+            [&](Index i, const Sums& s) { add(at(i), s); });
       finish_block(world, parts, sums.data(), first, end - first);
     });
   }
@@ -126,13 +136,16 @@ class SoilStress final : public Effect<Dim> {
     for (int m = 0; m < Dim * (Dim + 1) / 2; ++m) to.moment[m] += s.moment[m];
   }
 
-  // The constitutive step of particles first ... first + count - 1, as many at once as there are lanes.
-  void finish_block(World<Dim>& world, const SoilParts& parts, const Sums* sums, Index first, Index count) {
+  // The constitutive step of particles first ... first + count - 1, as many at once as there are
+  // lanes.
+  void finish_block(World<Dim>& world, const SoilParts& parts, const Sums* sums, Index first,
+                    Index count) {
     const double dt = world.clock.dt_acoustic;
-    // Soil that is packed closer than it was at t = 0, more than its pressure tells, meets the missing compression over the
-    // time in which sound passes 20 smoothing lengths. The rates alone lose sight of it: they see the smooth part of the motion,
-    // and sand that has flowed would end 20 to 40 % denser than it started. Margin and time are chosen: slow against sound, fast against
-    // the flow.
+    // Soil that is packed closer than it was at t = 0, more than its pressure tells, meets the
+    // missing compression over the time in which sound passes 20 smoothing lengths. The rates alone
+    // lose sight of it: they see the smooth part of the motion, and sand that has flowed would end
+    // 20 to 40 % denser than it started. Margin and time are chosen: slow against sound, fast
+    // against the flow.
     const Field<double>* crowding = crowded_ ? &soil_->scalar(fields::crowding) : nullptr;
     const double per_time = parts.fastest / (20 * soil_->smoothing_length());
     const bool corrected = world.model().numerics.soil_velocity_gradient == "corrected";
@@ -160,7 +173,9 @@ class SoilStress final : public Effect<Dim> {
         for (int c = 0; c < 6; ++c) s[c].raw[lane] = stress[i][c];
         DruckerPrager<double> soil = parts[part[i]].constants;
         if (wetted_)  // Eq. 108: the strength falls with the cohesion
-          soil = with_strength(soil, soil.strength + soil_->scalar(fields::saturation)[i] * (parts[part[i]].wet_strength - soil.strength));
+          soil = with_strength(soil,
+                               soil.strength + soil_->scalar(fields::saturation)[i] *
+                                                   (parts[part[i]].wet_strength - soil.strength));
         m.bulk.raw[lane] = soil.bulk;
         m.shear.raw[lane] = soil.shear;
         m.friction.raw[lane] = soil.friction;
@@ -176,7 +191,8 @@ class SoilStress final : public Effect<Dim> {
       symmetric_part(gradient, rates);
       if (crowding) {
         L excess;
-        for (int lane = 0; lane < L::width; ++lane) excess.raw[lane] = (*crowding)[first + of(lane)] - (1 + crowding_margin);
+        for (int lane = 0; lane < L::width; ++lane)
+          excess.raw[lane] = (*crowding)[first + of(lane)] - (1 + crowding_margin);
         excess = max(L(0.0), excess + (s[0] + s[1] + s[2]) / (L(3.0) * m.bulk));
         for (int a = 0; a < 3; ++a) gradient[a][a] -= L(per_time / 3) * excess;
       }
@@ -187,12 +203,14 @@ class SoilStress final : public Effect<Dim> {
         const bool bears = n[i] > loose * n0[i];
         for (int c = 0; c < 6; ++c) stress[i][c] = bears ? s[c][lane] : 0.0;
         for (int a = 0; a < Dim; ++a)
-          for (int c = a; c < Dim; ++c) correction[i][tensor_index<Dim>[a][c]] = inverse.entry[a][c][lane];
+          for (int c = a; c < Dim; ++c)
+            correction[i][tensor_index<Dim>[a][c]] = inverse.entry[a][c][lane];
         strain[i] += plastic.strain[lane];
         work[i] += plastic.work[lane] * volume[i];
-        // Eq. 8 with the divergence that the stress sees, so that n^s and stress tell of the same deformation. Eq. 48 adds a
-        // part (U* - mean U) that follows the difference of pressures; as the pressure of soil does not follow n^s,
-        // nothing would ever balance it, and soil under its own weight would grow denser without end.
+        // Eq. 8 with the divergence that the stress sees, so that n^s and stress tell of the same
+        // deformation. Eq. 48 adds a part (U* - mean U) that follows the difference of pressures;
+        // as the pressure of soil does not follow n^s, nothing would ever balance it, and soil
+        // under its own weight would grow denser without end.
         rate[i] = -n[i] * (rates[0][lane] + rates[1][lane] + rates[2][lane]);
       }
     }
@@ -208,7 +226,8 @@ class SoilStress final : public Effect<Dim> {
   }
 
   // sum . moment^-1: exact for linear velocities.
-  static void correct(const L (&a)[Dim][Dim], const InverseMoment<Dim, L>& inverse, L (&gradient)[3][3]) {
+  static void correct(const L (&a)[Dim][Dim], const InverseMoment<Dim, L>& inverse,
+                      L (&gradient)[3][3]) {
     L product[Dim][Dim];
     for (int i = 0; i < Dim; ++i)
       for (int j = 0; j < Dim; ++j) {
@@ -218,7 +237,8 @@ class SoilStress final : public Effect<Dim> {
     embed(product, gradient);
   }
 
-  // Share of the volume fraction at t = 0 below which soil bears nothing. Flowing sand keeps above 0.9 of it.
+  // Share of the volume fraction at t = 0 below which soil bears nothing. Flowing sand keeps above
+  // 0.9 of it.
   static constexpr double loose = 0.6;
   // Of the sum over neighbors, by disorder alone.
   static constexpr double crowding_margin = 0.05;

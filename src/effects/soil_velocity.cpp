@@ -4,20 +4,23 @@
 namespace sphgeo {
 namespace {
 
-/// Velocity of the soil at the water (Eq. 57), and that of the mixture, n^w v^w + n^s v^s, in the records of the water: the
-/// divergence of Eq. 58 is taken of it.
+/// Velocity of the soil at the water (Eq. 57), and that of the mixture, n^w v^w + n^s v^s, in the
+/// records of the water: the divergence of Eq. 58 is taken of it.
 ///
-/// Eq. 58 prints the bracket n_i v_i - n_j v_j - (1 - n_i) v_i^s, which does not vanish when water and soil move
-/// together. Eq. 23 asks for the divergence of n^w v^w + n^s v^s, whose difference between two water particles does.
+/// Eq. 58 prints the bracket n_i v_i - n_j v_j - (1 - n_i) v_i^s, which does not vanish when water
+/// and soil move together. Eq. 23 asks for the divergence of n^w v^w + n^s v^s, whose difference
+/// between two water particles does.
 template <int Dim>
 class SoilVelocity final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"soil_velocity", Stage::rate, "Eqs. 23, 57, 58", "velocity of the soil at the water, and of the mixture", false};
+    return {"soil_velocity", Stage::rate, "Eqs. 23, 57, 58",
+            "velocity of the soil at the water, and of the mixture", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!has_pore_water(world)) return {"there is no water, or there is no soil"};
-    if (world.model().numerics.pore_water == "constant_volume") return {"numerics.pore_water is constant_volume: the porosity does not enter the density"};
+    if (world.model().numerics.pore_water == "constant_volume")
+      return {"numerics.pore_water is constant_volume: the porosity does not enter the density"};
     return {std::make_unique<SoilVelocity>(world), "there are water and soil"};
   }
 
@@ -25,8 +28,10 @@ class SoilVelocity final : public Effect<Dim> {
 
   std::string acts_on() const override { return "water near soil"; }
   Needs needs() const override {
-    Needs n{{{"water", &fields::water_fraction, Access::read}, {"water", &fields::soil_sum, Access::read},
-             {"water", &fields::velocity, Access::read}, {"water", &fields::soil_velocity, Access::write}},
+    Needs n{{{"water", &fields::water_fraction, Access::read},
+             {"water", &fields::soil_sum, Access::read},
+             {"water", &fields::velocity, Access::read},
+             {"water", &fields::soil_velocity, Access::write}},
             {{"water", "soil"}}};
     if (moves_) n.fields.push_back({"soil", &fields::velocity, Access::read});
     return n;
@@ -58,7 +63,8 @@ class SoilVelocity final : public Effect<Dim> {
       auto& records = world.records("water").template get<T>();
       for_targets(world.list("water", "soil"), [&](Index i) {
         const Vec<Dim> flux = n[i] * v[i] + (1 - n[i]) * soil_velocity[i];
-        for (int k = 0; k < Dim; ++k) records[i][water_slot::velocity + k] = static_cast<T>(flux[k]);
+        for (int k = 0; k < Dim; ++k)
+          records[i][water_slot::velocity + k] = static_cast<T>(flux[k]);
       });
     });
   }

@@ -25,7 +25,8 @@ template <int Dim>
 class SoilWallForce final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"soil_wall_force", Stage::force, "Eqs. 69, 95", "stress and dissipation (one-sided Riemann) of walls on the soil", false};
+    return {"soil_wall_force", Stage::force, "Eqs. 69, 95",
+            "stress and dissipation (one-sided Riemann) of walls on the soil", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (world.find("soil") && !SoilParts(world).deformable) return {"no skeleton is deformable"};
@@ -36,14 +37,15 @@ class SoilWallForce final : public Effect<Dim> {
 
   std::string acts_on() const override { return near_walls("soil", walls_); }
   Needs needs() const override {
-    Needs n{{{"soil", &fields::volume, Access::read}, {"soil", &fields::stress, Access::read},
-             {"soil", &fields::mass, Access::read}, {"soil", &fields::acceleration_sum, Access::add}}, {}};
+    Needs n{{{"soil", &fields::volume, Access::read},
+             {"soil", &fields::stress, Access::read},
+             {"soil", &fields::mass, Access::read},
+             {"soil", &fields::acceleration_sum, Access::add}},
+            {}};
     need_walls(n, "soil", {walls_});
     return n;
   }
-  void prepare(World<Dim>& world) override {
-    soil_ = &world.set("soil");
-  }
+  void prepare(World<Dim>& world) override { soil_ = &world.set("soil"); }
 
   void apply(World<Dim>& world) override {
     const WallForceOnSoil<Dim> pair{SoilWallPair<Dim>(world, *soil_)};
@@ -53,10 +55,13 @@ class SoilWallForce final : public Effect<Dim> {
     const NeighborList& list = world.list("soil", walls_);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      gather<WallForceOnSoil<Dim>::template Sums>(
-          list, stress_records<T, soil_records<Dim>>(world),
-          with(world.records(walls_, 0).template get<T>(), world.records(walls_, 1).template get<T>()), pair,
-          [&](Index i, const auto& sum) { sum_of_forces[i] += to_vec(sum.force) * (volume[i] / m[i]); });
+      gather<WallForceOnSoil<Dim>::template Sums>(list, stress_records<T, soil_records<Dim>>(world),
+                                                  with(world.records(walls_, 0).template get<T>(),
+                                                       world.records(walls_, 1).template get<T>()),
+                                                  pair, [&](Index i, const auto& sum) {
+                                                    sum_of_forces[i] +=
+                                                        to_vec(sum.force) * (volume[i] / m[i]);
+                                                  });
     });
   }
 

@@ -9,11 +9,14 @@ template <int Dim>
 class SoilWallReaction final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"soil_wall_reaction", Stage::observe, "Eq. 70", "force of the soil on wall particles", true};
+    return {"soil_wall_reaction", Stage::observe, "Eq. 70", "force of the soil on wall particles",
+            true};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    if (!world.find("soil") || !world.find("walls")) return {"there is no soil, or there are no walls"};
-    return {std::make_unique<SoilWallReaction>(world.find("water") != nullptr), "there are soil and walls"};
+    if (!world.find("soil") || !world.find("walls"))
+      return {"there is no soil, or there are no walls"};
+    return {std::make_unique<SoilWallReaction>(world.find("water") != nullptr),
+            "there are soil and walls"};
   }
 
   /// Where there is water too, its reaction comes first.
@@ -21,7 +24,8 @@ class SoilWallReaction final : public Effect<Dim> {
 
   std::string acts_on() const override { return "walls near soil"; }
   Needs needs() const override {
-    return {{{"soil", &fields::stress, Access::read}, {"soil", &fields::volume, Access::read},
+    return {{{"soil", &fields::stress, Access::read},
+             {"soil", &fields::volume, Access::read},
              {"soil", &fields::pressure, Access::read},
              {"soil", &fields::mass, Access::read},
              {"walls", &fields::wall_force, adds_ ? Access::add : Access::write}},
@@ -40,7 +44,8 @@ class SoilWallReaction final : public Effect<Dim> {
       using T = decltype(number);
       gather<SoilForceOnWall<Dim>::template Sums>(
           world.list("walls", "soil"),
-          with(world.records("walls", 0).template get<T>(), world.records("walls", 1).template get<T>()),
+          with(world.records("walls", 0).template get<T>(),
+               world.records("walls", 1).template get<T>()),
           stress_records<T, soil_records<Dim>>(world), pair,
           [&](Index i, const auto& sum) { force[i] += to_vec(sum.force); });
     });

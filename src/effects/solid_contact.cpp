@@ -19,25 +19,29 @@ struct ContactPoint {
   double stiffness = 0;  ///< rho_0 c_0^2
   double impedance = 0;  ///< rho_0 c_0 times contact_damping
   double friction = 0;
-  double reach = 0;      ///< of the contact with other solids, 2 h^c, m
+  double reach = 0;  ///< of the contact with other solids, 2 h^c, m
 };
 
 /// Contact of solids with each other, with walls, and of a body with itself (Eqs. 78, 79).
 ///
-/// The pressure of a contact is rho_0 c_0^2 sum W V over the particles of others in reach, and the forces are the gradient
-/// of an energy, 1/2 rho_0 c_0^2 V (sum W V)^2 for every particle: a contact without friction and damping gives back what
-/// it took. Bodies that start closer than 2 h^c would be pushed apart by their mere presence: for them the reach
-/// is the gap of their particles at rest, so that they touch and are at ease.
+/// The pressure of a contact is rho_0 c_0^2 sum W V over the particles of others in reach, and the
+/// forces are the gradient of an energy, 1/2 rho_0 c_0^2 V (sum W V)^2 for every particle: a
+/// contact without friction and damping gives back what it took. Bodies that start closer than 2
+/// h^c would be pushed apart by their mere presence: for them the reach is the gap of their
+/// particles at rest, so that they touch and are at ease.
 ///
-/// Walls mirror the pressure of the solid, but only of what the sum exceeds the one of a plane wall that is touched: surface on
-/// surface, or as close as the body starts. A reach as short as the gap would see the single particles of the wall, and a block on a
-/// slope would rattle from one to the next. The force follows the gradient of the sum, which a plane has along its normal.
+/// Walls mirror the pressure of the solid, but only of what the sum exceeds the one of a plane wall
+/// that is touched: surface on surface, or as close as the body starts. A reach as short as the gap
+/// would see the single particles of the wall, and a block on a slope would rattle from one to the
+/// next. The force follows the gradient of the sum, which a plane has along its normal.
 template <int Dim>
 class SolidContact final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"solid_contact", Stage::solid_force, "Eqs. 78, 79", "contact of solids with each other and with walls", false,
-            "solids pass through each other, through themselves and through walls"};
+    return {
+        "solid_contact", Stage::solid_force,
+        "Eqs. 78, 79",   "contact of solids with each other and with walls",
+        false,           "solids pass through each other, through themselves and through walls"};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("skin")) return {"no solid can meet anything"};
@@ -48,15 +52,21 @@ class SolidContact final : public Effect<Dim> {
         ++solids;
         folds = folds || b.self_contact;
       }
-    if (solids < 2 && !folds && !world.find("walls")) return {"there is one solid, no wall, and it does not fold"};
-    return {std::make_unique<SolidContact>(world), world.find("walls") ? "there are solids and walls" : "solids can meet each other"};
+    if (solids < 2 && !folds && !world.find("walls"))
+      return {"there is one solid, no wall, and it does not fold"};
+    return {std::make_unique<SolidContact>(world),
+            world.find("walls") ? "there are solids and walls" : "solids can meet each other"};
   }
 
-  explicit SolidContact(const World<Dim>& world) : solids_(solid_sets(world)), walls_(world.find("walls") != nullptr) {}
+  explicit SolidContact(const World<Dim>& world)
+      : solids_(solid_sets(world)), walls_(world.find("walls") != nullptr) {}
 
   std::string acts_on() const override { return "skin"; }
   Needs needs() const override {
-    Needs n{{{"skin", &fields::position, Access::read}, {"skin", &fields::contact_force, Access::write}, {"skin", &fields::contact_energy, Access::write}}, {}};
+    Needs n{{{"skin", &fields::position, Access::read},
+             {"skin", &fields::contact_force, Access::write},
+             {"skin", &fields::contact_energy, Access::write}},
+            {}};
     for (const std::string& set : solids_) {
       n.fields.push_back({set, &fields::acceleration_sum, Access::add});
       n.fields.push_back({set, &fields::reference_position, Access::read});
@@ -78,8 +88,9 @@ class SolidContact final : public Effect<Dim> {
   }
 
   std::size_t bytes() const override {
-    return map_.bytes() + list_.bytes() + points_.capacity() * sizeof(ContactPoint<Dim>) + near_.capacity() * sizeof(Index) +
-           walls_seen_.capacity() * sizeof(WallSums<Dim>) + bulk_.capacity() * sizeof(double);
+    return map_.bytes() + list_.bytes() + points_.capacity() * sizeof(ContactPoint<Dim>) +
+           near_.capacity() * sizeof(Index) + walls_seen_.capacity() * sizeof(WallSums<Dim>) +
+           bulk_.capacity() * sizeof(double);
   }
 
  private:
@@ -104,21 +115,24 @@ class SolidContact final : public Effect<Dim> {
   void touch_walls(Index skin, double dt, Field<Vec<Dim>>& seen_force, Field<double>& energy);
 
   // Force on `a` by `b`, and how it grows with the pressures of both.
-  Vec<Dim> force(const ContactPoint<Dim>& a, const ContactPoint<Dim>& b, double pressures, double sums, double dt) const;
-  static Kernel<Dim> kernel(const ContactPoint<Dim>& a, const ContactPoint<Dim>& b) { return Kernel<Dim>(0.5 * std::min(a.reach, b.reach)); }
+  Vec<Dim> force(const ContactPoint<Dim>& a, const ContactPoint<Dim>& b, double pressures,
+                 double sums, double dt) const;
+  static Kernel<Dim> kernel(const ContactPoint<Dim>& a, const ContactPoint<Dim>& b) {
+    return Kernel<Dim>(0.5 * std::min(a.reach, b.reach));
+  }
 
   std::vector<std::string> solids_;
   bool walls_;
   SkinMap<Dim> map_;
   long arrangement_ = -1;
-  std::vector<ContactPoint<Dim>> bodies_;   // what is the same for all particles of a body
-  std::vector<WallTouch<Dim>> touch_;       // by body
-  std::vector<WallSums<Dim>> walls_seen_;   // by particle of the skin
-  std::vector<double> bulk_;                // by id of the wall's particle
-  std::vector<Index> near_;                 // particles of the skin that may touch another solid
-  std::vector<ContactPoint<Dim>> points_;   // of them
-  std::vector<double> sum_;                 // sum of W V at them
-  NeighborList list_;                       // among them
+  std::vector<ContactPoint<Dim>> bodies_;  // what is the same for all particles of a body
+  std::vector<WallTouch<Dim>> touch_;      // by body
+  std::vector<WallSums<Dim>> walls_seen_;  // by particle of the skin
+  std::vector<double> bulk_;               // by id of the wall's particle
+  std::vector<Index> near_;                // particles of the skin that may touch another solid
+  std::vector<ContactPoint<Dim>> points_;  // of them
+  std::vector<double> sum_;                // sum of W V at them
+  NeighborList list_;                      // among them
 };
 
 template <int Dim>
@@ -163,7 +177,8 @@ bool SolidContact<Dim>::may_touch(const World<Dim>& world, Index a, Index b) con
   const std::int32_t part = p.of->part[p.i];
   if (part != q.of->part[q.i]) return true;
   if (!world.model().bodies[static_cast<std::size_t>(part)].self_contact) return false;
-  return (p.of->reference_position[p.i] - q.of->reference_position[q.i]).norm() > 2 * p.of->smoothing_length;
+  return (p.of->reference_position[p.i] - q.of->reference_position[q.i]).norm() >
+         2 * p.of->smoothing_length;
 }
 
 // Particles of bodies whose boxes come within reach of each other, and the pairs among them.
@@ -173,21 +188,24 @@ void SolidContact<Dim>::find_partners(World<Dim>& world) {
   map_.update(world);
   if (bodies_.empty()) find_reaches(world);
   const ParticleSet<Dim>& skin = world.set("skin");
-  // As they were at the rearrangement, also for a run that goes on after it: the order of pairs is that of cells.
+  // As they were at the rearrangement, also for a run that goes on after it: the order of pairs is
+  // that of cells.
   const std::vector<Vec<Dim>> x = world.arranged_places("skin");
   const auto& part = skin.tag(fields::part);
   // Each body comes 0.2 of its h closer in an advection step; the skin's h is 1.25 of the largest.
   const double radius = 2 * skin.smoothing_length();
   using Box = Eigen::AlignedBox<double, Dim>;
   std::vector<Box> box(world.model().bodies.size());
-  for (Index k = 0; k < skin.size(); ++k) box[static_cast<std::size_t>(part[k])].extend(x[static_cast<std::size_t>(k)]);
+  for (Index k = 0; k < skin.size(); ++k)
+    box[static_cast<std::size_t>(part[k])].extend(x[static_cast<std::size_t>(k)]);
   std::vector<Box> meeting(box.size());  // where a body may meet others
   for (std::size_t a = 0; a < box.size(); ++a)
     for (std::size_t b = 0; b < box.size(); ++b) {
       if (a == b && !world.model().bodies[a].self_contact) continue;
       if (box[a].isEmpty() || box[b].isEmpty()) continue;
       const Vec<Dim> margin = Vec<Dim>::Constant(radius);
-      const Box common = Box(box[a].min() - margin, box[a].max() + margin).intersection(Box(box[b].min() - margin, box[b].max() + margin));
+      const Box common = Box(box[a].min() - margin, box[a].max() + margin)
+                             .intersection(Box(box[b].min() - margin, box[b].max() + margin));
       if (!common.isEmpty()) meeting[a].extend(common);
     }
   near_.clear();
@@ -201,12 +219,15 @@ void SolidContact<Dim>::find_partners(World<Dim>& world) {
   CellGrid<Dim> grid;
   grid.build(at, world.grid("skin").frame(), radius);
   list_.template build<Dim>(at, grid, radius, Pairing::within);
-  list_.filter([&](Index a, Index b) { return may_touch(world, near_[static_cast<std::size_t>(a)], near_[static_cast<std::size_t>(b)]); });
+  list_.filter([&](Index a, Index b) {
+    return may_touch(world, near_[static_cast<std::size_t>(a)], near_[static_cast<std::size_t>(b)]);
+  });
   if (list_.pairs() == 0) near_.clear();
 }
 
 template <int Dim>
-Vec<Dim> SolidContact<Dim>::force(const ContactPoint<Dim>& a, const ContactPoint<Dim>& b, double pressures, double sums, double dt) const {
+Vec<Dim> SolidContact<Dim>::force(const ContactPoint<Dim>& a, const ContactPoint<Dim>& b,
+                                  double pressures, double sums, double dt) const {
   const Vec<Dim> r = a.x - b.x;
   const double r2 = r.squaredNorm();
   const Kernel<Dim> w = kernel(a, b);
@@ -234,7 +255,9 @@ void SolidContact<Dim>::between_solids(World<Dim>& world) {
   const auto n = near_.size();
   points_.resize(n);
   sum_.assign(n, 0);
-  parallel_for(static_cast<Index>(n), [&](Index k) { points_[static_cast<std::size_t>(k)] = point_of(near_[static_cast<std::size_t>(k)]); });
+  parallel_for(static_cast<Index>(n), [&](Index k) {
+    points_[static_cast<std::size_t>(k)] = point_of(near_[static_cast<std::size_t>(k)]);
+  });
   auto& energy = world.set("skin").scalar(fields::contact_energy);
   auto& seen = world.set("skin").vector(fields::contact_force);
   const auto blocks = list_.blocks();
@@ -245,14 +268,16 @@ void SolidContact<Dim>::between_solids(World<Dim>& world) {
         if (block.count[k] == 0) continue;
         const std::size_t i = block.targets[k];
         auto sum = begin();
-        for (std::uint32_t e = 0; e < block.count[k]; ++e) pair(sum, i, static_cast<std::size_t>(block.entries[block.begin[k] + e] / 8));
+        for (std::uint32_t e = 0; e < block.count[k]; ++e)
+          pair(sum, i, static_cast<std::size_t>(block.entries[block.begin[k] + e] / 8));
         end(i, sum);
       }
     });
   };
   for_pairs([] { return 0.0; },
             [&](double& sum, std::size_t i, std::size_t j) {
-              sum += kernel(points_[i], points_[j]).w((points_[i].x - points_[j].x).squaredNorm()) * points_[j].volume;
+              sum += kernel(points_[i], points_[j]).w((points_[i].x - points_[j].x).squaredNorm()) *
+                     points_[j].volume;
             },
             [&](std::size_t i, double sum) {
               sum_[i] = sum;
@@ -262,7 +287,8 @@ void SolidContact<Dim>::between_solids(World<Dim>& world) {
   for_pairs([]() -> Vec<Dim> { return Vec<Dim>::Zero(); },
             [&](Vec<Dim>& sum, std::size_t i, std::size_t j) {
               const ContactPoint<Dim>&a = points_[i], &b = points_[j];
-              sum += force(a, b, a.stiffness * sum_[i] + b.stiffness * sum_[j], 0.5 * (sum_[i] + sum_[j]), dt);
+              sum += force(a, b, a.stiffness * sum_[i] + b.stiffness * sum_[j],
+                           0.5 * (sum_[i] + sum_[j]), dt);
             },
             [&](std::size_t i, const Vec<Dim>& sum) {
               const auto& [of, k] = map_.at(near_[i]);
@@ -321,12 +347,14 @@ void SolidContact<Dim>::with_walls(World<Dim>& world) {
   auto& seen_force = world.set("skin").vector(fields::contact_force);
   const auto blocks = world.list("skin", "walls").blocks();
   parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
-    for (const std::uint32_t skin : blocks[static_cast<std::size_t>(b)].targets) touch_walls(static_cast<Index>(skin), dt, seen_force, energy);
+    for (const std::uint32_t skin : blocks[static_cast<std::size_t>(b)].targets)
+      touch_walls(static_cast<Index>(skin), dt, seen_force, energy);
   });
 }
 
 template <int Dim>
-void SolidContact<Dim>::touch_walls(Index skin, double dt, Field<Vec<Dim>>& seen_force, Field<double>& energy) {
+void SolidContact<Dim>::touch_walls(Index skin, double dt, Field<Vec<Dim>>& seen_force,
+                                    Field<double>& energy) {
   const WallSums<Dim>& seen = walls_seen_[static_cast<std::size_t>(skin)];
   const auto& [of, i] = map_.at(skin);
   const WallTouch<Dim>& body = touch_[static_cast<std::size_t>(of->part[i])];
@@ -335,7 +363,8 @@ void SolidContact<Dim>::touch_walls(Index skin, double dt, Field<Vec<Dim>>& seen
   const ContactPoint<Dim> p = point_of(skin);
   const Vec<Dim> n = -seen.gradient / steepness, dv = p.v - seen.velocity;
   const double closing = -dv.dot(n);
-  // What the sum is at ease is left out: with this the pressure of Eq. 79 at half a spacing, all of the sum in the kernel of solids.
+  // What the sum is at ease is left out: with this the pressure of Eq. 79 at half a spacing, all of
+  // the sum in the kernel of solids.
   const double stiffness = 3 * p.stiffness;
   const double pressure = 2 * (stiffness * excess + p.impedance * std::max(0.0, closing));
   const double push = pressure * p.volume * steepness;
@@ -343,8 +372,10 @@ void SolidContact<Dim>::touch_walls(Index skin, double dt, Field<Vec<Dim>>& seen
   const Vec<Dim> slip = dv + closing * n;
   const double speed = slip.norm();
   if (p.friction > 0 && speed > 0) {
-    // No more than what stops the slip within some steps: of a particle, or of the whole body by all that touch.
-    const double most = body.rigid ? body.mass / (8 * static_cast<double>(body.touching) * dt) : p.mass / (4 * dt);
+    // No more than what stops the slip within some steps: of a particle, or of the whole body by
+    // all that touch.
+    const double most =
+        body.rigid ? body.mass / (8 * static_cast<double>(body.touching) * dt) : p.mass / (4 * dt);
     f -= std::min(p.friction * push / speed, most) * slip;
   }
   (*of->acceleration_sum)[i] += f / p.mass;

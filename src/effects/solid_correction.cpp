@@ -14,20 +14,22 @@ struct MomentSum {
     T moment[Dim * (Dim + 1) / 2] = {};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>&, const LaneVec<Dim, T>& r, const T& r2) const {
+  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>&,
+                  const LaneVec<Dim, T>& r, const T& r2) const {
     const T gradient = T(-1) * kernel.dw_over_r(r2);
     for (int k = 0, n = 0; k < Dim; ++k)
       for (int l = k; l < Dim; ++l, ++n) sum.moment[n] += gradient * r[k] * r[l];
   }
 };
 
-/// What follows from the places of solids at rest, once: the correction B0 of the gradient (Eq. 66) and the places in
-/// the records.
+/// What follows from the places of solids at rest, once: the correction B0 of the gradient (Eq. 66)
+/// and the places in the records.
 template <int Dim>
 class SolidCorrection final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"solid_correction", Stage::reinitialize, "Eq. 66", "correction of the kernel gradient of solids at rest, once", false};
+    return {"solid_correction", Stage::reinitialize, "Eq. 66",
+            "correction of the kernel gradient of solids at rest, once", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) { return bind_solids<SolidCorrection>(world); }
 
@@ -36,11 +38,15 @@ class SolidCorrection final : public Effect<Dim> {
 
   std::string acts_on() const override { return set_; }
   Needs needs() const override {
-    return {{{set_, &fields::reference_position, Access::read}, {set_, &fields::reference_volume, Access::read},
-             {set_, &fields::reference_correction, Access::write}}, {}, {set_}};
+    return {{{set_, &fields::reference_position, Access::read},
+             {set_, &fields::reference_volume, Access::read},
+             {set_, &fields::reference_correction, Access::write}},
+            {},
+            {set_}};
   }
   void prepare(World<Dim>& world) override {
-    const int records = 1 + solid_slot::stress_records_of_solids<Dim> + (viscous_solids(world, set_) ? 1 : 0);
+    const int records =
+        1 + solid_slot::stress_records_of_solids<Dim> + (viscous_solids(world, set_) ? 1 : 0);
     for (int k = 0; k < records; ++k) world.records(set_, k);
   }
 
@@ -54,22 +60,27 @@ class SolidCorrection final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       const auto& records = world.records(set_, 0).template get<T>();
-      gather<MomentSum<Dim>::template Sums>(world.reference_list(set_), records, records, pair, [&](Index i, const auto& sum) {
-        double moment[Dim * (Dim + 1) / 2];
-        for (std::size_t n = 0; n < std::size(moment); ++n) moment[n] = volume[i] * sum.moment[n];
-        const InverseMoment<Dim, double> inverse(moment);
-        Sym3 b = Sym3::Zero();
-        b[1] = 1;
-        for (int k = 0; k < Dim; ++k)
-          for (int l = k; l < Dim; ++l) b[tensor_index<Dim>[k][l]] = inverse.entry[k][l];
-        correction[i] = b;
-      });
+      gather<MomentSum<Dim>::template Sums>(world.reference_list(set_), records, records, pair,
+                                            [&](Index i, const auto& sum) {
+                                              double moment[Dim * (Dim + 1) / 2];
+                                              for (std::size_t n = 0; n < std::size(moment); ++n)
+                                                moment[n] = volume[i] * sum.moment[n];
+                                              const InverseMoment<Dim, double> inverse(moment);
+                                              Sym3 b = Sym3::Zero();
+                                              b[1] = 1;
+                                              for (int k = 0; k < Dim; ++k)
+                                                for (int l = k; l < Dim; ++l)
+                                                  b[tensor_index<Dim>[k][l]] = inverse.entry[k][l];
+                                              correction[i] = b;
+                                            });
     });
-    if (world.model().numerics.solid_gradient == "quadratic") world.reference_weights(set_) = quadratic_weights(world, set_);
+    if (world.model().numerics.solid_gradient == "quadratic")
+      world.reference_weights(set_) = quadratic_weights(world, set_);
   }
   void restore(World<Dim>& world) override {
     place(world);
-    if (world.model().numerics.solid_gradient == "quadratic") world.reference_weights(set_) = quadratic_weights(world, set_);
+    if (world.model().numerics.solid_gradient == "quadratic")
+      world.reference_weights(set_) = quadratic_weights(world, set_);
   }
 
  private:

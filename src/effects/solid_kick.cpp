@@ -8,13 +8,15 @@
 namespace sphgeo {
 namespace {
 
-/// Velocity and place of elastic solids at the end of their step (Eqs. 100, 101), what Eq. 95 averages, and the bounds
-/// of their clock.
+/// Velocity and place of elastic solids at the end of their step (Eqs. 100, 101), what Eq. 95
+/// averages, and the bounds of their clock.
 template <int Dim>
 class SolidKick final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"solid_kick", Stage::solid_kick, "Eqs. 94, 95, 100, 101", "velocity and place of elastic solids at the end of their step; bound of their clock", false};
+    return {"solid_kick", Stage::solid_kick, "Eqs. 94, 95, 100, 101",
+            "velocity and place of elastic solids at the end of their step; bound of their clock",
+            false};
   }
   static Binding<Dim> bind(const World<Dim>& world) { return bind_solids<SolidKick>(world); }
 
@@ -23,15 +25,19 @@ class SolidKick final : public Effect<Dim> {
 
   std::string acts_on() const override { return set_; }
   Needs needs() const override {
-    return {{{set_, &fields::acceleration_sum, Access::read}, {set_, &fields::clamp, Access::read},
-             {set_, &fields::position, Access::update}, {set_, &fields::velocity, Access::update},
-             {set_, &fields::acceleration, Access::update}}, {}};
+    return {{{set_, &fields::acceleration_sum, Access::read},
+             {set_, &fields::clamp, Access::read},
+             {set_, &fields::position, Access::update},
+             {set_, &fields::velocity, Access::update},
+             {set_, &fields::acceleration, Access::update}},
+            {}};
   }
 
   void apply(World<Dim>& world) override {
     ParticleSet<Dim>& set = world.set(set_);
     const Clock& clock = world.clock;
-    const double dt = clock.dt_solid, end = clock.solid_time() + dt, share = 1.0 / clock.solid_steps_each;
+    const double dt = clock.dt_solid, end = clock.solid_time() + dt,
+                 share = 1.0 / clock.solid_steps_each;
     const bool first = clock.solid_step == 0;
     const SolidParts parts(world);
     auto& x = set.vector(fields::position);
@@ -42,7 +48,8 @@ class SolidKick final : public Effect<Dim> {
     const auto& reference = set.vector(fields::reference_position);
     const auto& part = set.tag(fields::part);
     const auto& clamp = set.tag(fields::clamp);
-    const Field<Vec<Dim>>* fluid = set.has(fields::fluid_force) ? &set.vector(fields::fluid_force) : nullptr;
+    const Field<Vec<Dim>>* fluid =
+        set.has(fields::fluid_force) ? &set.vector(fields::fluid_force) : nullptr;
     parallel_for(set.size(), [&](Index i) {
       const SolidPart& p = parts[part[i]];
       if (!p.elastic) return;
@@ -54,7 +61,10 @@ class SolidKick final : public Effect<Dim> {
         v[i] = (v[i] * (1 - 0.5 * dt * p.damping) + dt * a) / (1 + 0.5 * dt * p.damping);
         x[i] += 0.5 * dt * v[i];
       } else {
-        const auto& motion = world.model().bodies[static_cast<std::size_t>(part[i])].clamped[static_cast<std::size_t>(clamp[i])].motion;
+        const auto& motion = world.model()
+                                 .bodies[static_cast<std::size_t>(part[i])]
+                                 .clamped[static_cast<std::size_t>(clamp[i])]
+                                 .motion;
         const Vec3 from = to_space<Dim>(reference[i]);
         x[i] = motion ? to_scene<Dim>(motion->position(from, end)) : reference[i];
         v[i] = motion ? to_scene<Dim>(motion->velocity(from, end)) : Vec<Dim>::Zero();
@@ -79,18 +89,22 @@ class SolidKick final : public Effect<Dim> {
     const double h = set.smoothing_length();
     const auto& v = set.vector(fields::velocity);
     const auto& a = set.vector(fields::acceleration);
-    const double speed = std::sqrt(block_max(set.size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
-    const double pull = std::sqrt(block_max(set.size(), [&](Index i) { return a[i].squaredNorm(); }, 0.0));
+    const double speed = std::sqrt(block_max(
+        set.size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
+    const double pull = std::sqrt(block_max(
+        set.size(), [&](Index i) { return a[i].squaredNorm(); }, 0.0));
     limits.note_speed(set_, speed / slowest_);
     // Eq. 94, with the compression wave: c_0 of Eq. 53 is slower, by 1.7 times at nu = 0.
-    const double step = solid_courant(n) * std::min(h / (sound_ + speed), std::sqrt(h / std::max(pull, 1e-300)));
+    const double step =
+        solid_courant(n) * std::min(h / (sound_ + speed), std::sqrt(h / std::max(pull, 1e-300)));
     limits.solid = std::min(limits.solid, step);
     // Not before: a run that is resumed has no particles yet when it is prepared.
     if (!beside_) beside_ = step_beside_light_solids(world, set_);
     limits.lower_acoustic(*beside_, "a solid lighter than what touches it");
     limits.advection = std::min(limits.advection, n.cfl_advection * h / std::max(speed, 1e-300));
     // Alone, a solid has no configuration to update: how often somebody may look decides.
-    if (!world.find("water") && !world.find("soil")) limits.advection = std::min(limits.advection, n.advection_ratio_max * step);
+    if (!world.find("water") && !world.find("soil"))
+      limits.advection = std::min(limits.advection, n.advection_ratio_max * step);
   }
 
  private:

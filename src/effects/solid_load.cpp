@@ -4,29 +4,39 @@
 namespace sphgeo {
 namespace {
 
-/// Hands the forces of water and soil from the skin to the solids, where they act through all steps of solids in the
-/// acoustic step. Their means over the advection step are what a probe shows: each rearrangement shakes the pressure, the steps after it
-/// calm it down, and the last of them alone is some percent off the force that moved the body.
+/// Hands the forces of water and soil from the skin to the solids, where they act through all steps
+/// of solids in the acoustic step. Their means over the advection step are what a probe shows: each
+/// rearrangement shakes the pressure, the steps after it calm it down, and the last of them alone
+/// is some percent off the force that moved the body.
 template <int Dim>
 class SolidLoad final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"solid_load", Stage::force, "Eq. 65, F^rs", "hands the forces of water and soil on their surface to the solids", false};
+    return {"solid_load", Stage::force, "Eq. 65, F^rs",
+            "hands the forces of water and soil on their surface to the solids", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    const bool water = world.find("water"), soil = world.find("soil") && SoilParts(world).deformable;
+    const bool water = world.find("water"),
+               soil = world.find("soil") && SoilParts(world).deformable;
     if (!world.find("skin") || (!water && !soil)) return {"no solid is in water or soil"};
-    return {std::make_unique<SolidLoad>(solid_sets(world), water, soil), "there are solids in water or soil"};
+    return {std::make_unique<SolidLoad>(solid_sets(world), water, soil),
+            "there are solids in water or soil"};
   }
 
-  SolidLoad(std::vector<std::string> solids, bool water, bool soil) : solids_(std::move(solids)), water_(water), soil_(soil) {}
+  SolidLoad(std::vector<std::string> solids, bool water, bool soil)
+      : solids_(std::move(solids)), water_(water), soil_(soil) {}
 
   std::string acts_on() const override { return "solids"; }
   Needs needs() const override {
     Needs n;
-    if (water_) n.fields.insert(n.fields.end(), {{"skin", &fields::water_force, Access::read}, {"skin", &fields::mean_water_force, Access::update}});
-    if (soil_) n.fields.insert(n.fields.end(), {{"skin", &fields::soil_force, Access::read}, {"skin", &fields::mean_soil_force, Access::update}});
-    for (const std::string& set : solids_) n.fields.push_back({set, &fields::fluid_force, Access::write});
+    if (water_)
+      n.fields.insert(n.fields.end(), {{"skin", &fields::water_force, Access::read},
+                                       {"skin", &fields::mean_water_force, Access::update}});
+    if (soil_)
+      n.fields.insert(n.fields.end(), {{"skin", &fields::soil_force, Access::read},
+                                       {"skin", &fields::mean_soil_force, Access::update}});
+    for (const std::string& set : solids_)
+      n.fields.push_back({set, &fields::fluid_force, Access::write});
     return n;
   }
   void prepare(World<Dim>& world) override {

@@ -14,14 +14,17 @@ struct PiolaForce {
     LaneVec<Dim, T> force{};
   };
   template <class T, int N>
-  void operator()(Sums<T>& sum, const Record<Dim, T, N>& i, const Record<Dim, T, N>& j, const LaneVec<Dim, T>& r, const T& r2) const {
+  void operator()(Sums<T>& sum, const Record<Dim, T, N>& i, const Record<Dim, T, N>& j,
+                  const LaneVec<Dim, T>& r, const T& r2) const {
     T both[Dim * Dim];
-    for (int k = 0; k < Dim * Dim; ++k) both[k] = i[solid_slot::piola<Dim>(k)] + j[solid_slot::piola<Dim>(k)];
+    for (int k = 0; k < Dim * Dim; ++k)
+      both[k] = i[solid_slot::piola<Dim>(k)] + j[solid_slot::piola<Dim>(k)];
     sum.force += kernel.dw_over_r(r2) * times(both, r);
   }
 };
 
-/// With a viscosity along the line between both particles as they are now, which keeps momentum and angular momentum.
+/// With a viscosity along the line between both particles as they are now, which keeps momentum and
+/// angular momentum.
 template <int Dim>
 struct ViscousPiolaForce {
   PiolaForce<Dim> stress;
@@ -32,26 +35,31 @@ struct ViscousPiolaForce {
     LaneVec<Dim, T> force{}, viscous{};
   };
   template <class T, int N>
-  void operator()(Sums<T>& sum, const Record<Dim, T, N>& i, const Record<Dim, T, N>& j, const LaneVec<Dim, T>& r, const T& r2) const {
+  void operator()(Sums<T>& sum, const Record<Dim, T, N>& i, const Record<Dim, T, N>& j,
+                  const LaneVec<Dim, T>& r, const T& r2) const {
     typename PiolaForce<Dim>::template Sums<T> elastic{sum.force};
     stress(elastic, i, j, r, r2);
     sum.force = elastic.force;
-    const LaneVec<Dim, T> now = r + i.vec(solid_slot::travelled<Dim>) - j.vec(solid_slot::travelled<Dim>);
+    const LaneVec<Dim, T> now =
+        r + i.vec(solid_slot::travelled<Dim>) - j.vec(solid_slot::travelled<Dim>);
     const LaneVec<Dim, T> dv = i.vec(solid_slot::velocity<Dim>) - j.vec(solid_slot::velocity<Dim>);
-    sum.viscous += (stress.kernel.dw_over_r(r2) * dot(dv, now) / (dot(now, now) + T(softening))) * now;
+    sum.viscous +=
+        (stress.kernel.dw_over_r(r2) * dot(dv, now) / (dot(now, now) + T(softening))) * now;
   }
 };
 
-/// Internal forces of elastic solids (Eq. 65). With the deformation of Eq. 67 they are the gradient of the strain
-/// energy, so that nothing but the time step changes the energy.
+/// Internal forces of elastic solids (Eq. 65). With the deformation of Eq. 67 they are the gradient
+/// of the strain energy, so that nothing but the time step changes the energy.
 ///
-/// The gradients do not see deformations that alternate from particle to particle, and nothing takes the energy of waves
-/// as short as the spacing, which impacts and the forces of water feed. A deck may ask for a viscosity that does.
+/// The gradients do not see deformations that alternate from particle to particle, and nothing
+/// takes the energy of waves as short as the spacing, which impacts and the forces of water feed. A
+/// deck may ask for a viscosity that does.
 template <int Dim>
 class SolidMomentum final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"solid_momentum", Stage::solid_force, "Eq. 65", "internal forces of elastic solids", false};
+    return {"solid_momentum", Stage::solid_force, "Eq. 65", "internal forces of elastic solids",
+            false};
   }
   static Binding<Dim> bind(const World<Dim>& world) { return bind_solids<SolidMomentum>(world); }
 
@@ -60,8 +68,11 @@ class SolidMomentum final : public Effect<Dim> {
 
   std::string acts_on() const override { return set_; }
   Needs needs() const override {
-    return {{{set_, &fields::reference_volume, Access::read}, {set_, &fields::mass, Access::read},
-             {set_, &fields::acceleration_sum, Access::write}}, {}, {set_}};
+    return {{{set_, &fields::reference_volume, Access::read},
+             {set_, &fields::mass, Access::read},
+             {set_, &fields::acceleration_sum, Access::write}},
+            {},
+            {set_}};
   }
 
   void prepare(World<Dim>& world) override { viscous_ = viscous_solids(world, set_); }
@@ -86,24 +97,32 @@ class SolidMomentum final : public Effect<Dim> {
     const PairWeights<Dim>& more = world.reference_weights(set_);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      const auto records = [&](int k) -> const Records<Dim, T>& { return world.records(set_, k).template get<T>(); };
-      const T* stress[] = {records(1).data(), records(solid_slot::stress_records_of_solids<Dim>).data()};
+      const auto records = [&](int k) -> const Records<Dim, T>& {
+        return world.records(set_, k).template get<T>();
+      };
+      const T* stress[] = {records(1).data(),
+                           records(solid_slot::stress_records_of_solids<Dim>).data()};
       const auto walk = [&](const auto& all) {
-        gather<Pair::template Sums>(world.reference_list(set_), all, all, pair, [&](Index i, const auto& sum) {
-          Vec<Dim> force = to_vec(sum.force);
-          if constexpr (viscous) force += parts[part[i]].viscosity * set.smoothing_length() * to_vec(sum.viscous);
-          force *= volume[i];
-          if (!more.empty())
-            more.by_source.for_row(i, [&](Index k, const float* weight) {
-              for (int a = 0; a < Dim; ++a)
-                for (int c = 0; c < Dim; ++c) {
-                  constexpr auto slot_of = solid_slot::piola<Dim>;
-                  const int slot = slot_of(a * Dim + c);
-                  force[a] -= static_cast<double>(stress[slot / record_size][k * record_size + slot % record_size]) * static_cast<double>(weight[c]);
-                }
+        gather<Pair::template Sums>(
+            world.reference_list(set_), all, all, pair, [&](Index i, const auto& sum) {
+              Vec<Dim> force = to_vec(sum.force);
+              if constexpr (viscous)
+                force += parts[part[i]].viscosity * set.smoothing_length() * to_vec(sum.viscous);
+              force *= volume[i];
+              if (!more.empty())
+                more.by_source.for_row(i, [&](Index k, const float* weight) {
+                  for (int a = 0; a < Dim; ++a)
+                    for (int c = 0; c < Dim; ++c) {
+                      constexpr auto slot_of = solid_slot::piola<Dim>;
+                      const int slot = slot_of(a * Dim + c);
+                      force[a] -=
+                          static_cast<double>(
+                              stress[slot / record_size][k * record_size + slot % record_size]) *
+                          static_cast<double>(weight[c]);
+                    }
+                });
+              sum_of_forces[i] = (volume[i] / m[i]) * force;
             });
-          sum_of_forces[i] = (volume[i] / m[i]) * force;
-        });
       };
       if constexpr (Dim == 2 && !viscous) walk(records(1));
       else if constexpr (Dim == 2 || !viscous) walk(with(records(1), records(2)));

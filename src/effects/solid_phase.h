@@ -1,5 +1,6 @@
 #pragma once
-// What the effects of solids share: parameters of their bodies, record layout, the deformation of the places at hand.
+// What the effects of solids share: parameters of their bodies, record layout, the deformation of
+// the places at hand.
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -17,8 +18,11 @@
 
 namespace sphgeo {
 
-/// CFL number of elastic solids (Eq. 94). With the quadratic gradient, weights of one side only, at corners, see short waves twice as well.
-inline double solid_courant(const Numerics& n) { return (n.solid_gradient == "quadratic" ? 0.7 : 1.0) * n.cfl_solid; }
+/// CFL number of elastic solids (Eq. 94). With the quadratic gradient, weights of one side only, at
+/// corners, see short waves twice as well.
+inline double solid_courant(const Numerics& n) {
+  return (n.solid_gradient == "quadratic" ? 0.7 : 1.0) * n.cfl_solid;
+}
 
 /// Parameters of one body, SI.
 struct SolidPart {
@@ -27,7 +31,7 @@ struct SolidPart {
   Hyperelastic law{0, 0};
   double wave_speed = 0;
   double damping = 0;
-  double viscosity = 0;                     ///< alpha rho_0 c, Pa s/m
+  double viscosity = 0;  ///< alpha rho_0 c, Pa s/m
 };
 
 /// Parameters of all bodies of the deck, by index.
@@ -41,20 +45,27 @@ struct SolidParts {
       part.material = solid_of(world.model(), body);
       part.elastic = dynamic_cast<const Elastic*>(part.material);
       if (part.elastic) {
-        part.law = {part.elastic->shear_modulus(), part.elastic->lame(), part.elastic->law == "neo_hookean"};
+        part.law = {part.elastic->shear_modulus(), part.elastic->lame(),
+                    part.elastic->law == "neo_hookean"};
         part.wave_speed = part.elastic->wave_speed();
         part.damping = part.elastic->damping;
-        part.viscosity = part.elastic->viscosity_factor * part.elastic->density * part.elastic->wave_speed();
+        part.viscosity =
+            part.elastic->viscosity_factor * part.elastic->density * part.elastic->wave_speed();
       }
       of.push_back(part);
     }
   }
-  const SolidPart& operator[](std::int32_t part) const { return of[static_cast<std::size_t>(part)]; }
+  const SolidPart& operator[](std::int32_t part) const {
+    return of[static_cast<std::size_t>(part)];
+  }
 };
 
-/// Whether what is clamped bears no strain: the quadratic gradient has the clamp's face in the free particles.
+/// Whether what is clamped bears no strain: the quadratic gradient has the clamp's face in the free
+/// particles.
 template <int Dim>
-bool clamps_at_face(const World<Dim>& world) { return world.model().numerics.solid_gradient == "quadratic"; }
+bool clamps_at_face(const World<Dim>& world) {
+  return world.model().numerics.solid_gradient == "quadratic";
+}
 
 /// Whether a set has solids with an artificial viscosity.
 template <int Dim>
@@ -91,17 +102,21 @@ Binding<Dim> bind_solids(const World<Dim>& world, bool rigid = false) {
   return binding;
 }
 
-/// Slots of the records of solids. Record 0: reference position and w; records 1 and 2: reference position and P B.
+/// Slots of the records of solids. Record 0: reference position and w; records 1 and 2: reference
+/// position and P B.
 namespace solid_slot {
 inline constexpr int displacement = 4;  ///< w, see Deformation
 /// Number k of P . B by rows, Dim x Dim numbers, behind the position of record 1.
 template <int Dim>
-constexpr int piola(int k) { return Dim + k < 8 ? Dim + k : 8 + (Dim + k - 8); }
-/// Records of the stress alone. The one behind them holds displacement and velocity, for viscous solids.
+constexpr int piola(int k) {
+  return Dim + k < 8 ? Dim + k : 8 + (Dim + k - 8);
+}
+/// Records of the stress alone. The one behind them holds displacement and velocity, for viscous
+/// solids.
 template <int Dim>
 inline constexpr int stress_records_of_solids = Dim == 2 ? 1 : 2;
 template <int Dim>
-inline constexpr int travelled = stress_records_of_solids<Dim> * record_size;
+inline constexpr int travelled = stress_records_of_solids<Dim>* record_size;
 template <int Dim>
 inline constexpr int velocity = travelled<Dim> + 3;
 }  // namespace solid_slot
@@ -151,10 +166,11 @@ Mat<Dim> nearest_rotation(const Mat<Dim>& a) {
   return svd.matrixU() * flip * svd.matrixV().transpose();
 }
 
-/// The deformation gradient of all particles of a set at their places. Eq. 67 is linear in the velocities, and so is
-/// its integral in the places: with B0, F_i = sum_j (x_j - x_i) (x) grad W V B0, and no error adds up. The pair sums
-/// see w = R^T (x - c) - (X - C), what a body has moved beyond its rigid motion (R, c): as F = R (I + sum (w_j - w_i)
-/// (x) grad W V B0) holds for any R and c, single precision costs digits of the strain and not of the travelled way.
+/// The deformation gradient of all particles of a set at their places. Eq. 67 is linear in the
+/// velocities, and so is its integral in the places: with B0, F_i = sum_j (x_j - x_i) (x) grad W V
+/// B0, and no error adds up. The pair sums see w = R^T (x - c) - (X - C), what a body has moved
+/// beyond its rigid motion (R, c): as F = R (I + sum (w_j - w_i) (x) grad W V B0) holds for any R
+/// and c, single precision costs digits of the strain and not of the travelled way.
 template <int Dim>
 class Deformation {
  public:
@@ -162,17 +178,21 @@ class Deformation {
 
   /// Frames of the bodies at the places at hand, from a few particles of each: near is near enough.
   void find_frames(const World<Dim>& world);
-  const BodyFrame<Dim>& frame(std::int32_t part) const { return frames_[static_cast<std::size_t>(part)]; }
+  const BodyFrame<Dim>& frame(std::int32_t part) const {
+    return frames_[static_cast<std::size_t>(part)];
+  }
 
   /// Writes w of particle i at the place x.
   template <class T>
-  void pack(Records<Dim, T>& records, Index i, const Vec<Dim>& x, const Vec<Dim>& reference, std::int32_t part) const {
+  void pack(Records<Dim, T>& records, Index i, const Vec<Dim>& x, const Vec<Dim>& reference,
+            std::int32_t part) const {
     const BodyFrame<Dim>& f = frame(part);
     const Vec<Dim> w = f.rotation.transpose() * (x - f.center) - (reference - f.reference_center);
     for (int k = 0; k < Dim; ++k) records[i][solid_slot::displacement + k] = static_cast<T>(w[k]);
   }
 
-  /// Calls finish(i, g): F = R (I + g) with the rotation of the body's frame. Reads what pack() wrote.
+  /// Calls finish(i, g): F = R (I + g) with the rotation of the body's frame. Reads what pack()
+  /// wrote.
   template <class F>
   void gather_gradients(World<Dim>& world, F&& finish) const;
 
@@ -191,9 +211,11 @@ struct DisplacementGradient {
     T g[Dim * Dim] = {};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T>& j, const LaneVec<Dim, T>& r, const T& r2) const {
+  void operator()(Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T>& j,
+                  const LaneVec<Dim, T>& r, const T& r2) const {
     const T gradient = kernel.dw_over_r(r2);
-    const LaneVec<Dim, T> dw = gradient * (j.vec(solid_slot::displacement) - i.vec(solid_slot::displacement));
+    const LaneVec<Dim, T> dw =
+        gradient * (j.vec(solid_slot::displacement) - i.vec(solid_slot::displacement));
     for (int k = 0; k < Dim; ++k)
       for (int l = 0; l < Dim; ++l) sum.g[k * Dim + l] += dw[k] * r[l];
   }
@@ -213,22 +235,27 @@ void Deformation<Dim>::gather_gradients(World<Dim>& world, F&& finish) const {
     using T = decltype(number);
     const auto& records = world.records(set_, 0).template get<T>();
     const PairWeights<Dim>& more = world.reference_weights(set_);
-    gather<DisplacementGradient<Dim>::template Sums>(world.reference_list(set_), records, records, pair, [&](Index i, const auto& sum) {
-      Mat<Dim> g;
-      for (int k = 0; k < Dim * Dim; ++k) g(k / Dim, k % Dim) = sum.g[k];
-      g = (volume[i] * g * to_matrix<Dim>(correction[i])).eval();  // one volume for all pairs of a body
-      if (!more.empty())
-        more.by_target.for_row(i, [&](Index j, const float* weight) {
-          // A weight on itself stands for a clamp near by: see quadratic_weights().
-          Vec<Dim> mirrored = Vec<Dim>::Zero();
-          if (j == i) mirrored = frame(part[i]).rotation.transpose() * (reference[i] - x[i]);
-          for (int k = 0; k < Dim; ++k) {
-            const double dw = j == i ? mirrored[k] : static_cast<double>(records[j][solid_slot::displacement + k]) - static_cast<double>(records[i][solid_slot::displacement + k]);
-            for (int l = 0; l < Dim; ++l) g(k, l) += dw * static_cast<double>(weight[l]);
-          }
+    gather<DisplacementGradient<Dim>::template Sums>(
+        world.reference_list(set_), records, records, pair, [&](Index i, const auto& sum) {
+          Mat<Dim> g;
+          for (int k = 0; k < Dim * Dim; ++k) g(k / Dim, k % Dim) = sum.g[k];
+          g = (volume[i] * g * to_matrix<Dim>(correction[i]))
+                  .eval();  // one volume for all pairs of a body
+          if (!more.empty())
+            more.by_target.for_row(i, [&](Index j, const float* weight) {
+              // A weight on itself stands for a clamp near by: see quadratic_weights().
+              Vec<Dim> mirrored = Vec<Dim>::Zero();
+              if (j == i) mirrored = frame(part[i]).rotation.transpose() * (reference[i] - x[i]);
+              for (int k = 0; k < Dim; ++k) {
+                const double dw =
+                    j == i ? mirrored[k]
+                           : static_cast<double>(records[j][solid_slot::displacement + k]) -
+                                 static_cast<double>(records[i][solid_slot::displacement + k]);
+                for (int l = 0; l < Dim; ++l) g(k, l) += dw * static_cast<double>(weight[l]);
+              }
+            });
+          finish(i, g);
         });
-      finish(i, g);
-    });
   });
 }
 
@@ -258,10 +285,12 @@ void Deformation<Dim>::find_frames(const World<Dim>& world) {
     }
   for (Index i = 0; i < set.size(); i += stride) {
     const auto b = static_cast<std::size_t>(part[i]);
-    moment[b] += (x[i] - frames_[b].center) * (reference[i] - frames_[b].reference_center).transpose();
+    moment[b] +=
+        (x[i] - frames_[b].center) * (reference[i] - frames_[b].reference_center).transpose();
   }
   for (std::size_t b = 0; b < bodies; ++b)
-    if (count[b] > Dim && moment[b].allFinite()) frames_[b].rotation = nearest_rotation<Dim>(moment[b]);
+    if (count[b] > Dim && moment[b].allFinite())
+      frames_[b].rotation = nearest_rotation<Dim>(moment[b]);
 }
 
 }  // namespace sphgeo

@@ -4,13 +4,14 @@
 namespace sphgeo {
 namespace {
 
-/// Elastic solids at the middle of their step: places, deformation (Eqs. 67, 99) and stress (Eqs. 36 to 40). Clamped
-/// regions are where their motion takes them.
+/// Elastic solids at the middle of their step: places, deformation (Eqs. 67, 99) and stress (Eqs.
+/// 36 to 40). Clamped regions are where their motion takes them.
 template <int Dim>
 class SolidPredict final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"solid_predict", Stage::solid_predict, "Eqs. 36-40, 67, 99", "places, deformation and stress of elastic solids at the middle of their step", false};
+    return {"solid_predict", Stage::solid_predict, "Eqs. 36-40, 67, 99",
+            "places, deformation and stress of elastic solids at the middle of their step", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) { return bind_solids<SolidPredict>(world); }
 
@@ -19,9 +20,14 @@ class SolidPredict final : public Effect<Dim> {
 
   std::string acts_on() const override { return set_; }
   Needs needs() const override {
-    return {{{set_, &fields::velocity, Access::read}, {set_, &fields::reference_position, Access::read},
-             {set_, &fields::reference_volume, Access::read}, {set_, &fields::reference_correction, Access::read},
-             {set_, &fields::clamp, Access::read}, {set_, &fields::position, Access::update}}, {}, {set_}};
+    return {{{set_, &fields::velocity, Access::read},
+             {set_, &fields::reference_position, Access::read},
+             {set_, &fields::reference_volume, Access::read},
+             {set_, &fields::reference_correction, Access::read},
+             {set_, &fields::clamp, Access::read},
+             {set_, &fields::position, Access::update}},
+            {},
+            {set_}};
   }
 
   void prepare(World<Dim>& world) override { viscous_ = viscous_solids(world, set_); }
@@ -46,11 +52,13 @@ class SolidPredict final : public Effect<Dim> {
           const Mat3 grad = to_space_tensor<Dim>(g);
           // P = F S with F = R (I + g).
           const Mat3 s = second_piola(grad, p.law);
-          pb = deformation_.frame(part[i]).rotation * to_scene_tensor<Dim>(s + grad * s) * to_matrix<Dim>(correction[i]);
+          pb = deformation_.frame(part[i]).rotation * to_scene_tensor<Dim>(s + grad * s) *
+               to_matrix<Dim>(correction[i]);
         }
         for (int k = 0; k < Dim * Dim; ++k) {
           const int slot = solid_slot::piola<Dim>(k);
-          record[slot / record_size][i * record_size + slot % record_size] = static_cast<T>(pb(k / Dim, k % Dim));
+          record[slot / record_size][i * record_size + slot % record_size] =
+              static_cast<T>(pb(k / Dim, k % Dim));
         }
       });
     });
@@ -68,14 +76,21 @@ class SolidPredict final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& records = world.records(set_, 0).template get<T>();
-      auto* motion_records = viscous_ ? &world.records(set_, 1 + solid_slot::stress_records_of_solids<Dim>).template get<T>() : nullptr;
+      auto* motion_records =
+          viscous_ ? &world.records(set_, 1 + solid_slot::stress_records_of_solids<Dim>)
+                          .template get<T>()
+                   : nullptr;
       parallel_for(set.size(), [&](Index i) {
         if (!parts[part[i]].elastic) return;
         if (clamp[i] < 0) {
           x[i] += half * v[i];
         } else {
-          const auto& motion = world.model().bodies[static_cast<std::size_t>(part[i])].clamped[static_cast<std::size_t>(clamp[i])].motion;
-          x[i] = motion ? to_scene<Dim>(motion->position(to_space<Dim>(reference[i]), middle)) : reference[i];
+          const auto& motion = world.model()
+                                   .bodies[static_cast<std::size_t>(part[i])]
+                                   .clamped[static_cast<std::size_t>(clamp[i])]
+                                   .motion;
+          x[i] = motion ? to_scene<Dim>(motion->position(to_space<Dim>(reference[i]), middle))
+                        : reference[i];
         }
         deformation_.pack(records, i, x[i], reference[i], part[i]);
         if (!motion_records) return;

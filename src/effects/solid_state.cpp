@@ -4,12 +4,15 @@
 namespace sphgeo {
 namespace {
 
-/// Stress, strain energy, volume and density of elastic solids at the places at hand, for whoever looks at them.
+/// Stress, strain energy, volume and density of elastic solids at the places at hand, for whoever
+/// looks at them.
 template <int Dim>
 class SolidState final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"solid_state", Stage::observe, "Eqs. 34, 36-40, 64, 67", "stress, strain energy and density of elastic solids at the time of a probe or frame", true};
+    return {"solid_state", Stage::observe, "Eqs. 34, 36-40, 64, 67",
+            "stress, strain energy and density of elastic solids at the time of a probe or frame",
+            true};
   }
   static Binding<Dim> bind(const World<Dim>& world) { return bind_solids<SolidState>(world); }
 
@@ -18,10 +21,15 @@ class SolidState final : public Effect<Dim> {
 
   std::string acts_on() const override { return set_; }
   Needs needs() const override {
-    return {{{set_, &fields::reference_position, Access::read}, {set_, &fields::reference_volume, Access::read},
-             {set_, &fields::reference_correction, Access::read}, {set_, &fields::cauchy_stress, Access::write},
-             {set_, &fields::von_mises, Access::write}, {set_, &fields::strain_energy, Access::write},
-             {set_, &fields::volume, Access::write}}, {}, {set_}};
+    return {{{set_, &fields::reference_position, Access::read},
+             {set_, &fields::reference_volume, Access::read},
+             {set_, &fields::reference_correction, Access::read},
+             {set_, &fields::cauchy_stress, Access::write},
+             {set_, &fields::von_mises, Access::write},
+             {set_, &fields::strain_energy, Access::write},
+             {set_, &fields::volume, Access::write}},
+            {},
+            {set_}};
   }
 
   void apply(World<Dim>& world) override {
@@ -41,7 +49,8 @@ class SolidState final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& records = world.records(set_, 0).template get<T>();
-      parallel_for(set.size(), [&](Index i) { deformation_.pack(records, i, x[i], reference[i], part[i]); });
+      parallel_for(set.size(),
+                   [&](Index i) { deformation_.pack(records, i, x[i], reference[i], part[i]); });
     });
     deformation_.gather_gradients(world, [&](Index i, const Mat<Dim>& g) {
       const SolidPart& p = parts[part[i]];
@@ -50,7 +59,9 @@ class SolidState final : public Effect<Dim> {
       volume[i] = volume0[i];
       if (!p.elastic || (at_face && clamp[i] >= 0)) return;
       const Mat3 grad = to_space_tensor<Dim>(g);
-      const Mat3 f = to_space_tensor<Dim>(deformation_.frame(part[i]).rotation) * (Mat3::Identity() + grad) + out_of_plane();
+      const Mat3 f =
+          to_space_tensor<Dim>(deformation_.frame(part[i]).rotation) * (Mat3::Identity() + grad) +
+          out_of_plane();
       const double jacobian = 1 + volume_change(grad);
       const Mat3 s = f * second_piola(grad, p.law) * f.transpose() / jacobian;
       stress[i] << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2);

@@ -2,8 +2,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/parallel.h"
 #include "boundaries/boundary.h"
+#include "core/parallel.h"
 #include "effects/effect.h"
 #include "effects/wall_records.h"
 #include "effects/wave_absorption.h"
@@ -13,13 +13,16 @@ namespace {
 
 /// The boundary of a wall particle's part, when it moves.
 const Motion* motion_of(const Model& model, std::int32_t part) {
-  const auto* wall = dynamic_cast<const WallBoundary*>(model.boundaries[static_cast<std::size_t>(part)].get());
+  const auto* wall =
+      dynamic_cast<const WallBoundary*>(model.boundaries[static_cast<std::size_t>(part)].get());
   return wall && wall->motion ? &*wall->motion : nullptr;
 }
 
-/// A step of what a piston moves beside that to take up waves (see wave_absorption.cpp): zero for every other wall.
+/// A step of what a piston moves beside that to take up waves (see wave_absorption.cpp): zero for
+/// every other wall.
 struct Extra {
-  Vec3 shift = Vec3::Zero(), velocity = Vec3::Zero(), acceleration = Vec3::Zero();  // at the end, the middle and the middle of the step
+  Vec3 shift = Vec3::Zero(), velocity = Vec3::Zero(),
+       acceleration = Vec3::Zero();  // at the end, the middle and the middle of the step
 
   Extra() = default;
   /// Brings the piston nearer to the speed that it is to have.
@@ -44,7 +47,8 @@ class WallMotion final : public Effect<Dim> {
   static Binding<Dim> bind(const World<Dim>& world) {
     for (std::size_t k = 0; k < world.model().boundaries.size(); ++k)
       if (world.find("walls") && motion_of(world.model(), static_cast<std::int32_t>(k)))
-        return {std::make_unique<WallMotion>(), "boundary '" + world.model().boundaries[k]->name + "' has a motion"};
+        return {std::make_unique<WallMotion>(),
+                "boundary '" + world.model().boundaries[k]->name + "' has a motion"};
     return {"no boundary has a motion"};
   }
 
@@ -83,7 +87,9 @@ class WallMotion final : public Effect<Dim> {
       if (!motions_[k]) continue;
       moments[k].emplace(*motions_[k], middle, end);
       const auto& waves = motions_[k]->waves;
-      if (waves && waves->absorb) extras[k] = Extra(PistonState(world, world.model().boundaries[k]->name), waves->direction, world.clock.dt_acoustic);
+      if (waves && waves->absorb)
+        extras[k] = Extra(PistonState(world, world.model().boundaries[k]->name), waves->direction,
+                          world.clock.dt_acoustic);
     }
     parallel_for(static_cast<Index>(moving_.size()), [&](Index place) {
       const Index i = moving_[static_cast<std::size_t>(place)];

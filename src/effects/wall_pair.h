@@ -14,49 +14,60 @@ inline constexpr int volume = 3;
 inline constexpr int velocity = 4;
 inline constexpr int no_slip = 7;  ///< 1 = no slip, 0 = free slip
 inline constexpr int normal = 8;   ///< n, outward from the solid
-inline constexpr int face = 11;    ///< for soil: 0 on a smooth wall in a concave corner, elsewhere 1
-inline constexpr int push = 12;    ///< (dv/dt - g) . n of the wall, not below its value at rest or zero
+inline constexpr int face = 11;  ///< for soil: 0 on a smooth wall in a concave corner, elsewhere 1
+inline constexpr int push =
+    12;  ///< (dv/dt - g) . n of the wall, not below its value at rest or zero
 inline constexpr int weight = 13;  ///< -g . n
-inline constexpr int yields = 14;  ///< 1 where the surface of a solid moves with the water, 0 for walls
-inline constexpr int near = 15;    ///< of solids, distance below which water is too close, m; 0 for walls
+inline constexpr int yields =
+    14;  ///< 1 where the surface of a solid moves with the water, 0 for walls
+inline constexpr int near =
+    15;  ///< of solids, distance below which water is too close, m; 0 for walls
 }  // namespace wall_slot
 
 /// One-sided Riemann problem between a water particle and a wall particle.
 ///
 /// Dummy pressure. Eq. 73 prints p + rho max[0, (g - a).n (r.n)] with n outward; that is zero under
-/// still water, so the sign of the bracket is turned: it rises when the wall pushes on the water. The print's zero leaves
-/// a lid, or the lower side of a body, the pressure of the water below it: half a spacing of hydrostatic pressure too much, in the
-/// buoyancy of every body. So there it falls as it does at rest, but no wall draws: neither below zero nor, by moving
-/// away, below that at rest. Along
-/// the wall the print keeps the pressure constant, which removes the wall's half of the vertical
-/// pressure gradient at a side wall, and still water would sink along it. There the momentum equation
-/// of the water itself, grad p = rho (g - dv/dt), carries the pressure along the wall: hydrostatic at
-/// rest, constant in free fall. dv/dt is that of the last acoustic step. Both are divided by the
-/// kernel's lattice moment (0.995 in 2D for h = 1.8 dp): in still water the pressure gradient is as
-/// much steeper than rho g as the sum over the water is weaker, and the wall has to follow it.
+/// still water, so the sign of the bracket is turned: it rises when the wall pushes on the water.
+/// The print's zero leaves a lid, or the lower side of a body, the pressure of the water below it:
+/// half a spacing of hydrostatic pressure too much, in the buoyancy of every body. So there it
+/// falls as it does at rest, but no wall draws: neither below zero nor, by moving away, below that
+/// at rest. Along the wall the print keeps the pressure constant, which removes the wall's half of
+/// the vertical pressure gradient at a side wall, and still water would sink along it. There the
+/// momentum equation of the water itself, grad p = rho (g - dv/dt), carries the pressure along the
+/// wall: hydrostatic at rest, constant in free fall. dv/dt is that of the last acoustic step. Both
+/// are divided by the kernel's lattice moment (0.995 in 2D for h = 1.8 dp): in still water the
+/// pressure gradient is as much steeper than rho g as the sum over the water is weaker, and the
+/// wall has to follow it.
 ///
-/// The density dissipation sees what of the push is beyond gravity, under a lid as over a floor. Anything left at rest would
-/// be a source of water: in pores, where drag holds it, a lasting flow away from every surface that looks down.
+/// The density dissipation sees what of the push is beyond gravity, under a lid as over a floor.
+/// Anything left at rest would be a source of water: in pores, where drag holds it, a lasting flow
+/// away from every surface that looks down.
 ///
-/// Solids. Eq. 95 takes their mean acceleration for the push. For a plate lighter than the water that its kernel
-/// reaches, what one step does with it is undone by more than as much in the next, and its particles shake ever
-/// harder. What it stands for is the pressure gradient in the water at a surface that moves with it: so here, too, it is
-/// that of the water itself, -(g - dv/dt) . n where that presses the water against the solid.
-/// A plate may be thinner than half a kernel, and then has less than a wall's worth of particles to hold water back with: water
-/// that comes too near to one of them meets the bulk modulus, so that nothing gets through however thin it is.
+/// Solids. Eq. 95 takes their mean acceleration for the push. For a plate lighter than the water
+/// that its kernel reaches, what one step does with it is undone by more than as much in the next,
+/// and its particles shake ever harder. What it stands for is the pressure gradient in the water at
+/// a surface that moves with it: so here, too, it is that of the water itself, -(g - dv/dt) . n
+/// where that presses the water against the solid. A plate may be thinner than half a kernel, and
+/// then has less than a wall's worth of particles to hold water back with: water that comes too
+/// near to one of them meets the bulk modulus, so that nothing gets through however thin it is.
 template <int Dim>
 struct WallPair {
   Kernel<Dim> kernel;
   RiemannFlux riemann;
   double inverse_sound;  ///< 1 / c0
   double two_eta;
-  double softening;      ///< 0.01 h^2
-  double slope;          ///< 1 / lattice_moment: the pressure gradient that the water's own sum balances
-  double bulk;           ///< rho0 c0^2 times the volume of a water particle
+  double softening;  ///< 0.01 h^2
+  double slope;  ///< 1 / lattice_moment: the pressure gradient that the water's own sum balances
+  double bulk;   ///< rho0 c0^2 times the volume of a water particle
 
   WallPair(const WaterConstants& w, double h, double dp)
-      : kernel(h), riemann(w), inverse_sound(1 / w.sound_speed), two_eta(2 * w.viscosity), softening(0.01 * h * h),
-        slope(1 / lattice_sums(kernel, dp).moment), bulk(w.density * w.sound_speed * w.sound_speed * std::pow(dp, Dim)) {}
+      : kernel(h),
+        riemann(w),
+        inverse_sound(1 / w.sound_speed),
+        two_eta(2 * w.viscosity),
+        softening(0.01 * h * h),
+        slope(1 / lattice_sums(kernel, dp).moment),
+        bulk(w.density * w.sound_speed * w.sound_speed * std::pow(dp, Dim)) {}
 
   /// Pressure rise of the wall by the push of Eq. 73, per rho, for the density dissipation.
   template <class T>
@@ -65,18 +76,23 @@ struct WallPair {
   }
   /// The same for the force, where the surface of a solid takes the water's own acceleration.
   template <class T>
-  static T rise(const Record<Dim, T, 2>& water, const Record<Dim, T, 2>& wall, const LaneVec<Dim, T>& n, const T& r_n) {
-    const T own = max(min(T(0), wall[wall_slot::weight]), T(-1) * dot(water.vec(water_slot::pull), n));
+  static T rise(const Record<Dim, T, 2>& water, const Record<Dim, T, 2>& wall,
+                const LaneVec<Dim, T>& n, const T& r_n) {
+    const T own =
+        max(min(T(0), wall[wall_slot::weight]), T(-1) * dot(water.vec(water_slot::pull), n));
     const T push = wall[wall_slot::push] + wall[wall_slot::yields] * (own - wall[wall_slot::push]);
-    return max(T(-1) * max(T(0), water[water_slot::pressure]) / water[water_slot::density], push * max(T(0), r_n));
+    return max(T(-1) * max(T(0), water[water_slot::pressure]) / water[water_slot::density],
+               push * max(T(0), r_n));
   }
 
   /// Friction of the wall on the water per unit volume of the water.
   template <class T>
-  LaneVec<Dim, T> friction(const Record<Dim, T, 2>& water, const Record<Dim, T, 2>& wall, const T& r2) const {
+  LaneVec<Dim, T> friction(const Record<Dim, T, 2>& water, const Record<Dim, T, 2>& wall,
+                           const T& r2) const {
     const LaneVec<Dim, T> dv = water.vec(water_slot::velocity) - wall.vec(wall_slot::velocity);
     const T gradient = kernel.dw_over_r(r2) * wall[wall_slot::volume];
-    return (T(two_eta) * T(2) * wall[wall_slot::no_slip] * gradient * r2 / (r2 + T(softening))) * dv;
+    return (T(two_eta) * T(2) * wall[wall_slot::no_slip] * gradient * r2 / (r2 + T(softening))) *
+           dv;
   }
 
   /// Force of the wall on the water per unit volume of the water; r = r_water - r_wall.
@@ -91,13 +107,14 @@ struct WallPair {
   /// The part of it that is pressure.
   template <class T>
   LaneVec<Dim, T> pressure(const Record<Dim, T, 2>& water, const Record<Dim, T, 2>& wall,
-                        const LaneVec<Dim, T>& r, const T& r2) const {
+                           const LaneVec<Dim, T>& r, const T& r2) const {
     const LaneVec<Dim, T> n = wall.vec(wall_slot::normal);
     const LaneVec<Dim, T> dv = water.vec(water_slot::velocity) - wall.vec(wall_slot::velocity);
     const T gradient = kernel.dw_over_r(r2) * wall[wall_slot::volume];
     const T r_n = dot(r, n);
     const LaneVec<Dim, T> along = r - r_n * n;
-    const T dummy = T(slope) * (rise(water, wall, n, r_n) - dot(water.vec(water_slot::pull), along));
+    const T dummy =
+        T(slope) * (rise(water, wall, n, r_n) - dot(water.vec(water_slot::pull), along));
     const T pressures = T(2) * water[water_slot::pressure] + water[water_slot::density] * dummy;
     // v_i - v_wall^d = 2 (v_i - v_wall) along n, with no slip or without.
     const T dissipation = riemann.dissipation(T(-2) * dot(dv, n));
@@ -119,7 +136,8 @@ struct WallPair {
     const T r_n = dot(r, n);
     const T sticking = wall[wall_slot::no_slip];
     const T dv_r = sticking * dot(dv, r) + (T(1) - sticking) * dot(dv, n) * r_n;
-    // p_i - p_wall^d, balanced like that of two water particles: what is left is the push beyond gravity.
+    // p_i - p_wall^d, balanced like that of two water particles: what is left is the push beyond
+    // gravity.
     const T excess = rise(wall, r_n) - wall[wall_slot::weight] * r_n;
     const T dissipation = T(-1) * excess * T(inverse_sound) * length(r2);
     return (T(2) * dv_r + dissipation) * gradient;

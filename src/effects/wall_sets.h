@@ -19,21 +19,25 @@ std::vector<std::string> wall_sets(const World<Dim>& world) {
 }
 
 /// Adds to the needs of an effect on `target` that it walks the walls around it.
-inline void need_walls(Needs& needs, const std::string& target, const std::vector<std::string>& walls) {
+inline void need_walls(Needs& needs, const std::string& target,
+                       const std::vector<std::string>& walls) {
   for (const std::string& set : walls) {
     needs.fields.push_back({set, &fields::volume, Access::read});
     needs.lists.push_back({target, set});
   }
 }
 
-/// One effect of kind E, made from the world and the name of the set, for each set of walls that meets `target`.
+/// One effect of kind E, made from the world and the name of the set, for each set of walls that
+/// meets `target`.
 template <class E, int Dim>
 Binding<Dim> bind_walls(const World<Dim>& world, const std::string& target) {
   if (!world.find(target)) return {"there is no " + target};
   Binding<Dim> binding("there are no walls and no solids");
   for (const std::string& set : wall_sets(world)) {
     binding.effects.push_back(std::make_unique<E>(world, set));
-    binding.because = "there are " + target + " and " + (set == "skin" ? (binding.effects.size() > 1 ? "walls and solids" : "solids") : "walls");
+    binding.because =
+        "there are " + target + " and " +
+        (set == "skin" ? (binding.effects.size() > 1 ? "walls and solids" : "solids") : "walls");
   }
   return binding;
 }

@@ -9,7 +9,8 @@ template <int Dim>
 class WallState final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"wall_state", Stage::reinitialize, "Eq. 73", "packs volume, normal and push of the walls", false};
+    return {"wall_state", Stage::reinitialize, "Eq. 73",
+            "packs volume, normal and push of the walls", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("walls")) return {"there are no walls"};

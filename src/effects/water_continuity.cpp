@@ -28,10 +28,10 @@ struct ContinuityPair {
     using namespace water_slot;
     const T gradient = kernel.dw_over_r(r2) * j[volume];
     const T dv_r = dot(i.vec(velocity) - j.vec(velocity), r);
-    // 2 (p_i - p_j) / (2 rho0 c0) dW/dr: the Riemann velocity U* instead of the mean one. Both sides of
-    // the Riemann problem are first taken to the middle of the pair with the hydrostatic gradient: the
-    // plain difference of Eq. 58 is not zero in still water, and where the kernel is cut off at the free
-    // surface its sum lifts the surface for ever.
+    // 2 (p_i - p_j) / (2 rho0 c0) dW/dr: the Riemann velocity U* instead of the mean one. Both
+    // sides of the Riemann problem are first taken to the middle of the pair with the hydrostatic
+    // gradient: the plain difference of Eq. 58 is not zero in still water, and where the kernel is
+    // cut off at the free surface its sum lifts the surface for ever.
     T jump = i[pressure] - j[pressure];
     for (int k = 0; k < Dim; ++k) jump -= T(weight[k]) * r[k];
     const T dissipation = jump * T(inverse_impedance) * length(r2);
@@ -44,12 +44,15 @@ struct ContinuityPair {
   }
 };
 
-/// Rate of density of the water (Eq. 58). Where soil is, the records hold the velocity of the mixture (see SoilVelocity).
+/// Rate of density of the water (Eq. 58). Where soil is, the records hold the velocity of the
+/// mixture (see SoilVelocity).
 template <int Dim>
 class WaterContinuity final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"water_continuity", Stage::rate, "Eq. 58", "divergence and well-balanced Riemann density dissipation between water particles", false};
+    return {"water_continuity", Stage::rate, "Eq. 58",
+            "divergence and well-balanced Riemann density dissipation between water particles",
+            false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
@@ -60,7 +63,8 @@ class WaterContinuity final : public Effect<Dim> {
 
   std::string acts_on() const override { return "water"; }
   Needs needs() const override {
-    Needs n{{{"water", &fields::density, Access::read}, {"water", &fields::density_rate, Access::write}},
+    Needs n{{{"water", &fields::density, Access::read},
+             {"water", &fields::density_rate, Access::write}},
             {{"water", "water"}}};
     if (porous_) {
       n.fields.push_back({"water", &fields::water_fraction, Access::read});
@@ -85,15 +89,19 @@ class WaterContinuity final : public Effect<Dim> {
   void run(World<Dim>& world) {
     using Pair = ContinuityPair<Dim, Porous>;
     const WaterConstants w = WaterConstants::of(world);
-    const Pair pair{Kernel<Dim>(world.set("water").smoothing_length()), 1 / (w.density * w.sound_speed), w.density * world.gravity()};
+    const Pair pair{Kernel<Dim>(world.set("water").smoothing_length()),
+                    1 / (w.density * w.sound_speed), w.density * world.gravity()};
     const Field<double>* n = volume_share(world);
     const Field<double>* scale = gradient_scale(world);
     world.with_pair_precision([&](auto number) {
       const auto& records = world.records("water").template get<decltype(number)>();
-      gather<Pair::template Sums>(world.list("water", "water"), records, records, pair, [&](Index i, const auto& sum) {
-        if constexpr (Porous) (*rate_)[i] = (*density_)[i] * (*scale)[i] * (sum.divergence / (*n)[i] + sum.dissipation);
-        else (*rate_)[i] = (*density_)[i] * sum.divergence;
-      });
+      gather<Pair::template Sums>(
+          world.list("water", "water"), records, records, pair, [&](Index i, const auto& sum) {
+            if constexpr (Porous)
+              (*rate_)[i] =
+                  (*density_)[i] * (*scale)[i] * (sum.divergence / (*n)[i] + sum.dissipation);
+            else (*rate_)[i] = (*density_)[i] * sum.divergence;
+          });
     });
   }
 

@@ -18,7 +18,9 @@ class WaterCorrect final : public Effect<Dim> {
 
   std::string acts_on() const override { return "water"; }
   Needs needs() const override {
-    return {{{"water", &fields::density, Access::update}, {"water", &fields::density_rate, Access::read}}, {}};
+    return {{{"water", &fields::density, Access::update},
+             {"water", &fields::density_rate, Access::read}},
+            {}};
   }
   void prepare(World<Dim>& world) override { water_ = &world.set("water"); }
   void apply(World<Dim>& world) override {

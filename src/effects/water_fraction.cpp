@@ -2,9 +2,9 @@
 #include <array>
 
 #include "effects/effect.h"
-#include "effects/wall_sets.h"
 #include "effects/pore_water.h"
 #include "effects/wall_pair.h"
+#include "effects/wall_sets.h"
 
 namespace sphgeo {
 namespace {
@@ -15,12 +15,13 @@ struct SoilAround {
   Kernel<Dim> kernel;
   template <class T>
   struct Sums {
-    T grains{};           ///< sum of omega W
-    T presence{};         ///< sum of V W
+    T grains{};            ///< sum of omega W
+    T presence{};          ///< sum of V W
     LaneVec<3, T> drag{};  ///< sum of omega W times the coefficients of the drag
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j, const LaneVec<Dim, T>&, const T& r2) const {
+  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j,
+                  const LaneVec<Dim, T>&, const T& r2) const {
     const T w = kernel.w(r2), grains = w * j[pore_slot::weight];
     sum.grains += grains;
     sum.presence += w * j[pore_slot::other];
@@ -37,7 +38,8 @@ struct WallShare {
     T share{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j, const LaneVec<Dim, T>&, const T& r2) const {
+  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j,
+                  const LaneVec<Dim, T>&, const T& r2) const {
     sum.share += kernel.w(r2) * j[wall_slot::volume];
   }
 };
@@ -51,36 +53,45 @@ struct WeightedNumber {
     T weight{}, product{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j, const LaneVec<Dim, T>&, const T& r2) const {
+  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j,
+                  const LaneVec<Dim, T>&, const T& r2) const {
     const T w = kernel.w(r2) * j[pore_slot::weight];
     sum.weight += w;
     sum.product += w * j[pore_slot::other];
   }
 };
 
-/// Once per advection step: the share of the volume that water can take (Eq. 56), and what the drag needs of the soil around.
+/// Once per advection step: the share of the volume that water can take (Eq. 56), and what the drag
+/// needs of the soil around.
 ///
-/// The sum is cut off at walls. Its missing part is taken to be like the rest: it is divided by the share of the kernel that lies
-/// outside of walls, as if the soil were mirrored there.
+/// The sum is cut off at walls. Its missing part is taken to be like the rest: it is divided by the
+/// share of the kernel that lies outside of walls, as if the soil were mirrored there.
 template <int Dim>
 class WaterFraction final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"water_fraction", Stage::reinitialize, "Eq. 56", "share of the volume that soil leaves to the water, and the soil's share in the drag", false};
+    return {"water_fraction", Stage::reinitialize, "Eq. 56",
+            "share of the volume that soil leaves to the water, and the soil's share in the drag",
+            false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!has_pore_water(world)) return {"there is no water, or there is no soil"};
     return {std::make_unique<WaterFraction>(world), "there are water and soil"};
   }
 
-  explicit WaterFraction(const World<Dim>& world) : walls_(wall_sets(world)), deformable_(SoilParts(world).deformable) {}
+  explicit WaterFraction(const World<Dim>& world)
+      : walls_(wall_sets(world)), deformable_(SoilParts(world).deformable) {}
 
   std::string acts_on() const override { return "water near soil"; }
-  // The places are those of before the transport shift, whose target volumes need this fraction: they are not named here.
+  // The places are those of before the transport shift, whose target volumes need this fraction:
+  // they are not named here.
   Needs needs() const override {
-    Needs n{{{"water", &fields::water_fraction, Access::write}, {"water", &fields::soil_sum, Access::write},
-             {"water", &fields::drag_linear, Access::write}, {"water", &fields::drag_quadratic, Access::write},
-             {"soil", &fields::volume_fraction, Access::read}, {"soil", &fields::mass, Access::read}},
+    Needs n{{{"water", &fields::water_fraction, Access::write},
+             {"water", &fields::soil_sum, Access::write},
+             {"water", &fields::drag_linear, Access::write},
+             {"water", &fields::drag_quadratic, Access::write},
+             {"soil", &fields::volume_fraction, Access::read},
+             {"soil", &fields::mass, Access::read}},
             {{"water", "soil"}}};
     need_walls(n, "water", walls_);
     if (deformable_) {
@@ -113,7 +124,10 @@ class WaterFraction final : public Effect<Dim> {
   }
 
   void tally(std::vector<Tally>& tallies) const override {
-    tallies.push_back({"water_fraction_floor", "1", "water particles at the floor of the water fraction, at the last rearrangement", at_floor()});
+    tallies.push_back(
+        {"water_fraction_floor", "1",
+         "water particles at the floor of the water fraction, at the last rearrangement",
+         at_floor()});
   }
 
  private:
@@ -147,21 +161,27 @@ class WaterFraction final : public Effect<Dim> {
   void pack_soil(World<Dim>& world) {
     auto& soil = pore_records<T>(world, "soil");
     const SoilParts parts(world);
-    const double g = world.gravity().norm(), rho0 = water_->constant("density"), eta = water_->constant("viscosity");
+    const double g = world.gravity().norm(), rho0 = water_->constant("density"),
+                 eta = water_->constant("viscosity");
     const auto& part = soil_->tag(fields::part);
     const auto& m = soil_->scalar(fields::mass);
     const auto& n = soil_->scalar(fields::volume_fraction);
-    std::vector<std::array<double, 3>> drag;  // by body: Eq. 29 times (n^w)^2, and the two terms of Eq. 31
+    std::vector<std::array<double, 3>>
+        drag;  // by body: Eq. 29 times (n^w)^2, and the two terms of Eq. 31
     for (const SoilPart& p : parts.of) {
       drag.push_back({0, 0, 0});
       if (!p.material) continue;
       const Soil& s = *p.material;
       if (s.drag_law() == "darcy") drag.back()[0] = rho0 * g / *s.hydraulic_conductivity;
-      if (s.drag_law() == "ergun") drag.back() = {0, s.drag_viscous * eta / (*s.grain_size * *s.grain_size), s.drag_inertial * rho0 / *s.grain_size};
+      if (s.drag_law() == "ergun")
+        drag.back() = {0, s.drag_viscous * eta / (*s.grain_size * *s.grain_size),
+                       s.drag_inertial * rho0 / *s.grain_size};
     }
     parallel_for(soil_->size(), [&](Index k) {
       T* slot = soil[k];
-      for (int c = 0; c < 3; ++c) slot[pore_slot::vector + c] = static_cast<T>(drag[static_cast<std::size_t>(part[k])][static_cast<std::size_t>(c)]);
+      for (int c = 0; c < 3; ++c)
+        slot[pore_slot::vector + c] =
+            static_cast<T>(drag[static_cast<std::size_t>(part[k])][static_cast<std::size_t>(c)]);
       slot[pore_slot::other] = static_cast<T>(m[k] / (parts[part[k]].grain_density * n[k]));
     });
   }
@@ -186,25 +206,35 @@ class WaterFraction final : public Effect<Dim> {
       if (list.blocks()[static_cast<std::size_t>(b)].size() == 0) return;
       std::array<double, block_size> share{};
       for (const std::string& set : walls_)
-        gather_block<WallShare<Dim>::template Sums>(world.list("water", set), b, world.records("water").template get<T>(), world.records(set).template get<T>(),
-                                                    WallShare<Dim>{kernel}, [&](Index i, const auto& s) { share[static_cast<std::size_t>(i - b * block_size)] += s.share; });
-      gather_block<SoilAround<Dim>::template Sums>(list, b, water, soil, SoilAround<Dim>{kernel}, [&](Index i, const auto& s) {
-        const double inside = std::max(0.1, 1 - share[static_cast<std::size_t>(i - b * block_size)]);
-        const double free = 1 - s.grains / inside;
-        n[i] = std::max(floor_, free);
-        grains[i] = s.grains;
-        water[i][pore_slot::weight] = static_cast<T>(s.grains > 0 ? 1 / s.grains : 0);
-        if (!(s.grains > 0)) return;
-        // The share of the volume that is soil, pores and all: Darcy's law itself does not fade where the soil ends.
-        const double presence = std::min(1.0, s.presence / inside);
-        linear[i] = (n[i] * n[i] * presence * s.drag[0] + (1 - n[i]) * (1 - n[i]) / n[i] * s.drag[1]) / s.grains;
-        quadratic[i] = (1 - n[i]) * s.drag[2] / s.grains;
-      });
+        gather_block<WallShare<Dim>::template Sums>(
+            world.list("water", set), b, world.records("water").template get<T>(),
+            world.records(set).template get<T>(), WallShare<Dim>{kernel},
+            [&](Index i, const auto& s) {
+              share[static_cast<std::size_t>(i - b * block_size)] += s.share;
+            });
+      gather_block<SoilAround<Dim>::template Sums>(
+          list, b, water, soil, SoilAround<Dim>{kernel}, [&](Index i, const auto& s) {
+            const double inside =
+                std::max(0.1, 1 - share[static_cast<std::size_t>(i - b * block_size)]);
+            const double free = 1 - s.grains / inside;
+            n[i] = std::max(floor_, free);
+            grains[i] = s.grains;
+            water[i][pore_slot::weight] = static_cast<T>(s.grains > 0 ? 1 / s.grains : 0);
+            if (!(s.grains > 0)) return;
+            // The share of the volume that is soil, pores and all: Darcy's law itself does not fade
+            // where the soil ends.
+            const double presence = std::min(1.0, s.presence / inside);
+            linear[i] =
+                (n[i] * n[i] * presence * s.drag[0] + (1 - n[i]) * (1 - n[i]) / n[i] * s.drag[1]) /
+                s.grains;
+            quadratic[i] = (1 - n[i]) * s.drag[2] / s.grains;
+          });
     });
   }
 
-  // The mass of soil that an impulse on each water particle would move, were all of them given impulses alike: an impulse J_l is
-  // spread by P_lk, so soil k gains P_lk J_l / m_k, and water i sees sum_k P_ik of that.
+  // The mass of soil that an impulse on each water particle would move, were all of them given
+  // impulses alike: an impulse J_l is spread by P_lk, so soil k gains P_lk J_l / m_k, and water i
+  // sees sum_k P_ik of that.
   template <class T>
   void soil_masses(World<Dim>& world) {
     const WeightedNumber<Dim> pair{Kernel<Dim>(water_->smoothing_length())};
@@ -215,14 +245,19 @@ class WaterFraction final : public Effect<Dim> {
     auto& water = pore_records<T>(world, "water");
     auto& inverse = water_->scalar(fields::inverse_soil_mass);
     parallel_for(soil_->size(), [&](Index k) { soil[k][pore_slot::other] = T(0); });
-    gather<WeightedNumber<Dim>::template Sums>(world.list("soil", "water"), soil, water, pair, [&](Index k, const auto& s) {
-      if (parts[part[k]].moves) soil[k][pore_slot::other] = static_cast<T>(static_cast<double>(soil[k][pore_slot::weight]) * s.weight / m[k]);
-    });
+    gather<WeightedNumber<Dim>::template Sums>(
+        world.list("soil", "water"), soil, water, pair, [&](Index k, const auto& s) {
+          if (parts[part[k]].moves)
+            soil[k][pore_slot::other] =
+                static_cast<T>(static_cast<double>(soil[k][pore_slot::weight]) * s.weight / m[k]);
+        });
     const auto& grains = water_->scalar(fields::soil_sum);
     parallel_for(water_->size(), [&](Index i) { inverse[i] = 0; });
-    gather<WeightedNumber<Dim>::template Sums>(world.list("water", "soil"), water, soil, pair, [&](Index i, const auto& s) {
-      if (grains[i] > 0) inverse[i] = s.product / grains[i];
-    });
+    gather<WeightedNumber<Dim>::template Sums>(world.list("water", "soil"), water, soil, pair,
+                                               [&](Index i, const auto& s) {
+                                                 if (grains[i] > 0)
+                                                   inverse[i] = s.product / grains[i];
+                                               });
   }
 
   std::vector<std::string> walls_;  // sets of walls

@@ -15,7 +15,8 @@ template <int Dim>
 class WaterKick final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"water_kick", Stage::kick, "Eqs. 91, 92, 97, 98", "velocity and place at the end of the step; bounds of both clocks", false};
+    return {"water_kick", Stage::kick, "Eqs. 91, 92, 97, 98",
+            "velocity and place at the end of the step; bounds of both clocks", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
@@ -73,19 +74,22 @@ class WaterKick final : public Effect<Dim> {
     limits.lower_acoustic(acoustic, "sound in water");
     // Eq. 91. At rest h/|v| has no bound: then the acoustic step bounds it, by a ratio that equals
     // what Eqs. 91 and 92 give together at a tenth of the speed of sound.
-    double advection = std::min(n.advection_ratio_max * acoustic, n.cfl_advection * h / std::max(speed, 1e-300));
-    if (w.viscosity > 0) advection = std::min(advection, n.cfl_advection * w.density * h * h / w.viscosity);
+    double advection =
+        std::min(n.advection_ratio_max * acoustic, n.cfl_advection * h / std::max(speed, 1e-300));
+    if (w.viscosity > 0)
+      advection = std::min(advection, n.cfl_advection * w.density * h * h / w.viscosity);
     limits.advection = std::min(limits.advection, advection);
   }
 
  private:
-  // The largest speed, m/s; NaN if there is one. The kick has looked at all, unless particles have been
-  // lost or read from a file since then.
+  // The largest speed, m/s; NaN if there is one. The kick has looked at all, unless particles have
+  // been lost or read from a file since then.
   double largest_speed(const World<Dim>& world) const {
     if (arrangement_ == world.arrangement())
       return std::sqrt(std::accumulate(fastest_.begin(), fastest_.end(), 0.0, max_or_nan));
     const auto& v = water_->vector(fields::velocity);
-    return std::sqrt(block_max(water_->size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
+    return std::sqrt(block_max(
+        water_->size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
   }
 
   ParticleSet<Dim>* water_ = nullptr;

@@ -4,13 +4,14 @@
 namespace sphgeo {
 namespace {
 
-/// Pressure and viscosity between two water particles. In pores, the pressure force is also that on the soil, and its sum is kept apart.
+/// Pressure and viscosity between two water particles. In pores, the pressure force is also that on
+/// the soil, and its sum is kept apart.
 template <int Dim, bool Viscous, bool Porous>
 struct MomentumPair {
   Kernel<Dim> kernel;
   RiemannFlux riemann;
-  double two_eta;   ///< eta (n_i + n_j) with n = 1
-  double softening; ///< 0.01 h^2
+  double two_eta;    ///< eta (n_i + n_j) with n = 1
+  double softening;  ///< 0.01 h^2
 
   template <class T>
   struct Clear {
@@ -35,7 +36,9 @@ struct MomentumPair {
     sum.force -= (two_p_star * gradient) * r;
     // (n_i + n_j) V_j / n_i of Eq. 60, by Eq. 27 for equal masses.
     if constexpr (Viscous && Porous)
-      sum.friction += (T(0.5 * two_eta) * (gradient + kernel.dw_over_r(r2) * i[volume]) * r2 / (r2 + T(softening))) * dv;
+      sum.friction += (T(0.5 * two_eta) * (gradient + kernel.dw_over_r(r2) * i[volume]) * r2 /
+                       (r2 + T(softening))) *
+                      dv;
     else if constexpr (Viscous)
       sum.force += (T(two_eta) * gradient * r2 / (r2 + T(softening))) * dv;
   }
@@ -47,20 +50,23 @@ template <int Dim>
 class WaterMomentum final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"water_momentum", Stage::force, "Eqs. 60-63", "gravity, pressure (Riemann) and viscosity between water particles", false};
+    return {"water_momentum", Stage::force, "Eqs. 60-63",
+            "gravity, pressure (Riemann) and viscosity between water particles", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     const ParticleSet<Dim>* water = world.find("water");
     if (!water) return {"there is no water"};
     return {std::make_unique<WaterMomentum>(world.find("soil") != nullptr),
-            water->constant("viscosity") > 0 ? "there is water" : "there is water; inviscid: no viscous term"};
+            water->constant("viscosity") > 0 ? "there is water"
+                                             : "there is water; inviscid: no viscous term"};
   }
 
   explicit WaterMomentum(bool porous) : porous_(porous) {}
 
   std::string acts_on() const override { return "water"; }
   Needs needs() const override {
-    Needs n{{{"water", &fields::density, Access::read}, {"water", &fields::pressure, Access::read},
+    Needs n{{{"water", &fields::density, Access::read},
+             {"water", &fields::pressure, Access::read},
              {"water", &fields::acceleration_sum, Access::write}},
             {{"water", "water"}}};
     if (porous_) n.fields.push_back({"water", &fields::pressure_force, Access::write});
@@ -88,7 +94,8 @@ class WaterMomentum final : public Effect<Dim> {
     const Vec<Dim> g = world.gravity();
     const Pair pair{Kernel<Dim>(h), RiemannFlux(w), 2 * w.viscosity, 0.01 * h * h};
     const Field<double>* scale = Porous ? gradient_scale(world) : nullptr;
-    Field<Vec<Dim>>* pressure_force = Porous ? &world.set("water").vector(fields::pressure_force) : nullptr;
+    Field<Vec<Dim>>* pressure_force =
+        Porous ? &world.set("water").vector(fields::pressure_force) : nullptr;
     world.with_pair_precision([&](auto number) {
       const auto& records = world.records("water").template get<decltype(number)>();
       gather<Pair::template Sums>(world.list("water", "water"), records, records, pair,

@@ -32,22 +32,27 @@ bool volume_follows_porosity(const World<Dim>& world) {
 /// n^w of the water (Eq. 27); null where its volume does not follow it.
 template <int Dim>
 const Field<double>* volume_share(const World<Dim>& world) {
-  return volume_follows_porosity(world) ? &world.set("water").scalar(fields::water_fraction) : nullptr;
+  return volume_follows_porosity(world) ? &world.set("water").scalar(fields::water_fraction)
+                                        : nullptr;
 }
 
 /// Names the need of volume_share(), where there is one.
 template <int Dim>
 void need_volume_share(const World<Dim>& world, Needs& needs) {
-  if (volume_follows_porosity(world)) needs.fields.push_back({"water", &fields::water_fraction, Access::read});
+  if (volume_follows_porosity(world))
+    needs.fields.push_back({"water", &fields::water_fraction, Access::read});
 }
 
-/// What the pair sums of gradients between water particles are multiplied by, as one factor for each side of a pair: 1 in clear
-/// water. In soil the particles are spread wider than the kernel was made for, and their sums see a linear field by
-/// several percent too weak. One factor a side leaves action and reaction equal. Walls have that of the water particle they meet, so that a
-/// constant pressure pushes nobody who lies evenly between water and wall. Null where there is no water in soil.
+/// What the pair sums of gradients between water particles are multiplied by, as one factor for
+/// each side of a pair: 1 in clear water. In soil the particles are spread wider than the kernel
+/// was made for, and their sums see a linear field by several percent too weak. One factor a side
+/// leaves action and reaction equal. Walls have that of the water particle they meet, so that a
+/// constant pressure pushes nobody who lies evenly between water and wall. Null where there is no
+/// water in soil.
 template <int Dim>
 const Field<double>* gradient_scale(const World<Dim>& world) {
-  return volume_follows_porosity(world) ? &world.set("water").scalar(fields::gradient_scale) : nullptr;
+  return volume_follows_porosity(world) ? &world.set("water").scalar(fields::gradient_scale)
+                                        : nullptr;
 }
 
 /// Slots of a water record behind the position.
@@ -69,10 +74,13 @@ struct RiemannFlux {
   double limiter;        ///< xi
 
   explicit RiemannFlux(const WaterConstants& w)
-      : impedance(w.density * w.sound_speed), inverse_sound(1.0 / w.sound_speed), limiter(w.limiter) {}
+      : impedance(w.density * w.sound_speed),
+        inverse_sound(1.0 / w.sound_speed),
+        limiter(w.limiter) {}
 
   /// Twice the dissipative part of P*: beta rho0 c0 (U_L - U_R), zero when the pair separates.
-  /// With equal densities and sound speeds the limiter of Eq. 63 is min(xi max(U_L - U_R, 0) / c0, 1).
+  /// With equal densities and sound speeds the limiter of Eq. 63 is min(xi max(U_L - U_R, 0) / c0,
+  /// 1).
   template <class T>
   T dissipation(const T& approach) const {
     const T closing = max(T(0), approach);

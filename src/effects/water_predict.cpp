@@ -5,12 +5,14 @@
 namespace sphgeo {
 namespace {
 
-/// Density and place at the middle of the acoustic step, pressure and volume there (Eqs. 26, 27, 96).
+/// Density and place at the middle of the acoustic step, pressure and volume there (Eqs. 26, 27,
+/// 96).
 template <int Dim>
 class WaterPredict final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"water_predict", Stage::predict, "Eqs. 26, 27, 96", "density, place, pressure and volume at the middle of the step", false};
+    return {"water_predict", Stage::predict, "Eqs. 26, 27, 96",
+            "density, place, pressure and volume at the middle of the step", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
@@ -19,7 +21,8 @@ class WaterPredict final : public Effect<Dim> {
 
   explicit WaterPredict(const World<Dim>& world) {
     need_volume_share(world, volume_);
-    if (volume_follows_porosity(world)) volume_.fields.push_back({"water", &fields::gradient_scale, Access::read});
+    if (volume_follows_porosity(world))
+      volume_.fields.push_back({"water", &fields::gradient_scale, Access::read});
   }
 
   std::string acts_on() const override { return "water"; }
@@ -63,8 +66,8 @@ class WaterPredict final : public Effect<Dim> {
         rho[i] += half * rate[i];
         x[i] += half * v[i];
         p[i] = c2 * (rho[i] - w.density);
-        // Drops that part bear no tension: it would hold a particle back over the whole advection step, until pairs are found anew,
-        // and let it go with more energy than it had.
+        // Drops that part bear no tension: it would hold a particle back over the whole advection
+        // step, until pairs are found anew, and let it go with more energy than it had.
         if (surface[i] == spray) p[i] = std::max(p[i], 0.0);
         volume[i] = m[i] / (share ? (*share)[i] * rho[i] : rho[i]);
         T* slot = records[i];
@@ -77,9 +80,11 @@ class WaterPredict final : public Effect<Dim> {
   }
 
   void bounds(const World<Dim>& world, std::vector<FieldBound>& watched) const override {
-    const double rho0 = water_->constant("density"), most = world.model().numerics.density_bound * rho0;
+    const double rho0 = water_->constant("density"),
+                 most = world.model().numerics.density_bound * rho0;
     watched.push_back({"water", &fields::density, rho0 - most, rho0 + most,
-                       "pressures of the order of rho0 c0^2: bodies that start inside each other, or a sound speed that is too low"});
+                       "pressures of the order of rho0 c0^2: bodies that start inside each other, "
+                       "or a sound speed that is too low"});
   }
 
  private:

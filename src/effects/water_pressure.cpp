@@ -10,7 +10,8 @@ template <int Dim>
 class WaterPressure final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"water_pressure", Stage::observe, "Eqs. 26, 27", "pressure and volume at the time of a probe or frame", true};
+    return {"water_pressure", Stage::observe, "Eqs. 26, 27",
+            "pressure and volume at the time of a probe or frame", true};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
@@ -21,8 +22,11 @@ class WaterPressure final : public Effect<Dim> {
 
   std::string acts_on() const override { return "water"; }
   Needs needs() const override {
-    Needs n{{{"water", &fields::density, Access::read}, {"water", &fields::mass, Access::read},
-             {"water", &fields::pressure, Access::write}, {"water", &fields::volume, Access::write}}, {}};
+    Needs n{{{"water", &fields::density, Access::read},
+             {"water", &fields::mass, Access::read},
+             {"water", &fields::pressure, Access::write},
+             {"water", &fields::volume, Access::write}},
+            {}};
     n.fields.insert(n.fields.end(), volume_.fields.begin(), volume_.fields.end());
     return n;
   }

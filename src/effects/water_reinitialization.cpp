@@ -4,28 +4,28 @@
 #include <cmath>
 
 #include "effects/effect.h"
-#include "effects/wall_sets.h"
 #include "effects/lattice_sums.h"
+#include "effects/wall_sets.h"
 #include "effects/water_phase.h"
 
 namespace sphgeo {
 namespace {
 
-/// The sums that say how the particles lie: number density, its gradient, divergence of position; in soil also the gradient
-/// of the water fraction (Eq. 89).
+/// The sums that say how the particles lie: number density, its gradient, divergence of position;
+/// in soil also the gradient of the water fraction (Eq. 89).
 template <int Dim, bool Porous>
 struct ArrangementPair {
   Kernel<Dim> kernel;
 
   template <class T>
   struct Clear {
-    T number{};                    ///< sum of W V
-    LaneVec<Dim, T> gradient{};    ///< sum of grad W V
-    T moment[Dim][Dim] = {};       ///< sum of r (x) grad W V
+    T number{};                  ///< sum of W V
+    LaneVec<Dim, T> gradient{};  ///< sum of grad W V
+    T moment[Dim][Dim] = {};     ///< sum of r (x) grad W V
   };
   template <class T>
   struct Pores : Clear<T> {
-    LaneVec<Dim, T> fraction{};    ///< q: sum of (n_j - n_i) grad W V
+    LaneVec<Dim, T> fraction{};  ///< q: sum of (n_j - n_i) grad W V
   };
   template <class T>
   struct Sums : std::conditional_t<Porous, Pores<T>, Clear<T>> {};
@@ -94,19 +94,22 @@ struct Arrangement {
 };
 
 /// Once per advection step, in one walk over the pairs: the free surface by the divergence of
-/// position, the density by summation (Algorithm 2, line 11) and the transport displacement (Eqs. 87, 88).
+/// position, the density by summation (Algorithm 2, line 11) and the transport displacement (Eqs.
+/// 87, 88).
 ///
-/// In soil every sum is taken with the target volumes m / (rho0 n^w) of Eq. 88. So the density, too, is told by how far the
-/// particles are from the spacing that the porosity asks for. The print's sum of m W, divided by the particle's own n^w,
-/// compares a fraction that was smoothed twice with one that was smoothed once: at a step of porosity they differ by
-/// several percent, which the equation of state would answer with pressures of several dynamic heads. And in pores the sum is only
-/// followed as fast as the water can flow there (see pore_share).
+/// In soil every sum is taken with the target volumes m / (rho0 n^w) of Eq. 88. So the density,
+/// too, is told by how far the particles are from the spacing that the porosity asks for. The
+/// print's sum of m W, divided by the particle's own n^w, compares a fraction that was smoothed
+/// twice with one that was smoothed once: at a step of porosity they differ by several percent,
+/// which the equation of state would answer with pressures of several dynamic heads. And in pores
+/// the sum is only followed as fast as the water can flow there (see pore_share).
 ///
-/// The gradient of the shift weighs every particle as the pressure force does, with the scale of gradients: so the places that the
-/// shift leads to are those where a constant pressure has no resultant. Where the drag keeps particles from following the sum, it
-/// takes the volumes m / (rho n^w) of now. With those at rest (Eq. 88) it works against the compression of water at depth,
-/// without end: particles that stay where they are then have a velocity against it, and the drag of fine soil answers to
-/// that velocity with more than the weight of the water.
+/// The gradient of the shift weighs every particle as the pressure force does, with the scale of
+/// gradients: so the places that the shift leads to are those where a constant pressure has no
+/// resultant. Where the drag keeps particles from following the sum, it takes the volumes m / (rho
+/// n^w) of now. With those at rest (Eq. 88) it works against the compression of water at depth,
+/// without end: particles that stay where they are then have a velocity against it, and the drag of
+/// fine soil answers to that velocity with more than the weight of the water.
 template <int Dim>
 class WaterReinitialization final : public Effect<Dim> {
  public:
@@ -117,8 +120,11 @@ class WaterReinitialization final : public Effect<Dim> {
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
     const Numerics& n = world.model().numerics;
-    if (n.density_reinitialization != "summation" && !n.transport_velocity && !volume_follows_porosity(world))
-      return {"numerics switches off both density_reinitialization by summation and transport_velocity"};
+    if (n.density_reinitialization != "summation" && !n.transport_velocity &&
+        !volume_follows_porosity(world))
+      return {
+          "numerics switches off both density_reinitialization by summation and "
+          "transport_velocity"};
     return {std::make_unique<WaterReinitialization>(world), "there is water"};
   }
 
@@ -127,7 +133,8 @@ class WaterReinitialization final : public Effect<Dim> {
     need_volume_share(world, volume_);
     if (!porous_) return;
     volume_.fields.push_back({"water", &fields::gradient_scale, Access::update});
-    if (world.model().numerics.transport_velocity) volume_.fields.push_back({"water", &fields::acceleration, Access::read});
+    if (world.model().numerics.transport_velocity)
+      volume_.fields.push_back({"water", &fields::acceleration, Access::read});
     volume_.fields.push_back({"water", &fields::drag_linear, Access::read});
     volume_.fields.push_back({"water", &fields::drag_quadratic, Access::read});
   }
@@ -187,13 +194,16 @@ class WaterReinitialization final : public Effect<Dim> {
         records[i][pair.fraction] = static_cast<T>((*n)[i]);
         const double before = (*scale)[i] > 0 ? (*scale)[i] : 1;
         const double held = (*n)[i] < 1 ? 1 - pore_share(world, i) : 0;
-        records[i][pair.swelling] = static_cast<T>(before * (by_target ? 1 + held * (rho0 / rho[i] - 1) : (*n)[i]));
+        records[i][pair.swelling] =
+            static_cast<T>(before * (by_target ? 1 + held * (rho0 / rho[i] - 1) : (*n)[i]));
       }
     });
-    const auto walk = [&](const NeighborList& list, const Records<Dim, T>& sources, const auto& with_pair, Index b, Sums& sums) {
+    const auto walk = [&](const NeighborList& list, const Records<Dim, T>& sources,
+                          const auto& with_pair, Index b, Sums& sums) {
       gather_block<std::decay_t<decltype(with_pair)>::template Sums>(
-          list, b, records, sources, with_pair,
-          [&](Index i, const auto& s) { sums[static_cast<std::size_t>(i - b * block_size)].add(s); });
+          list, b, records, sources, with_pair, [&](Index i, const auto& s) {
+            sums[static_cast<std::size_t>(i - b * block_size)].add(s);
+          });
     };
     const NeighborList& water = world.list("water", "water");
     Records<Dim, T>* second = transport ? &world.records("water", 1).template get<T>() : nullptr;
@@ -205,10 +215,12 @@ class WaterReinitialization final : public Effect<Dim> {
       if constexpr (Porous)  // as a water particle like itself would
         for (Index i = begin; i < end; ++i)
           sums[static_cast<std::size_t>(i - begin)].gradient /= (*scale)[i] > 0 ? (*scale)[i] : 1;
-      for (const std::string& set : walls_) walk(world.list("water", set), world.records(set).template get<T>(), wall_pair, b, sums);
+      for (const std::string& set : walls_)
+        walk(world.list("water", set), world.records(set).template get<T>(), wall_pair, b, sums);
       for (Index i = begin; i < end; ++i) {
         const Arrangement<Dim>& s = sums[static_cast<std::size_t>(i - begin)];
-        // The divergence of position is Dim in the bulk; three quarters of it tell the surface, half of it spray.
+        // The divergence of position is Dim in the bulk; three quarters of it tell the surface,
+        // half of it spray.
         const double filled = -s.moment.trace() / Dim;
         surface[i] = filled < 0.5 ? spray : filled < 0.75 ? 1 : 0;
         double lattice = lattice_;
@@ -220,21 +232,25 @@ class WaterReinitialization final : public Effect<Dim> {
         if (summation) {
           const double summed = rho0 * (s.number + self * at_rest(i)) / lattice;
           const bool in_pores = Porous && (*n)[i] < 1;
-          // A sum that falls short is a surface or a splash, not a rarefaction: it keeps its density,
-          // up to the factor by which rho exceeds rho0.
+          // A sum that falls short is a surface or a splash, not a rarefaction: it keeps its
+          // density, up to the factor by which rho exceeds rho0.
           const double told = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
-          rho[i] = in_pores ? rho[i] + pore_change(pore_share(world, i), told - rho[i], rho0) : told;
+          rho[i] =
+              in_pores ? rho[i] + pore_change(pore_share(world, i), told - rho[i], rho0) : told;
           // A free surface bears no tension; a lonely particle would be drawn into a wall by it.
           if (surface[i]) rho[i] = std::max(rho[i], rho0);
         }
-        if (second) pack_surface((*second)[i] - record_size, surface[i] != 0, s, Porous ? projected(world, s) : s.gradient);
+        if (second)
+          pack_surface((*second)[i] - record_size, surface[i] != 0, s,
+                       Porous ? projected(world, s) : s.gradient);
       }
     });
   }
 
   // What the shift needs of one particle.
   template <class T>
-  static void pack_surface(T* slot, bool surface, const Arrangement<Dim>& s, const Vec<Dim>& gradient) {
+  static void pack_surface(T* slot, bool surface, const Arrangement<Dim>& s,
+                           const Vec<Dim>& gradient) {
     using Pair = SurfacePair<Dim>;
     const Vec<Dim> normal = surface ? surface_normal(s) : Vec<Dim>::Zero();
     slot[Pair::on_surface] = surface ? T(1) : T(0);
@@ -244,36 +260,43 @@ class WaterReinitialization final : public Effect<Dim> {
     }
   }
 
-  // How much of the sum's density a particle in pores takes over. Particles never lie so evenly that their sum says less than
-  // some thousandths of a density, a pressure of several heads. In clear water they get out of each other's way
-  // at once. In pores the pressure spreads with the diffusivity n^2 rho c^2 / D only, D the drag, and until then the soil feels it.
-  // So the share is a thousandth of the times that a smoothing length evens out within the step.
+  // How much of the sum's density a particle in pores takes over. Particles never lie so evenly
+  // that their sum says less than some thousandths of a density, a pressure of several heads. In
+  // clear water they get out of each other's way at once. In pores the pressure spreads with the
+  // diffusivity n^2 rho c^2 / D only, D the drag, and until then the soil feels it. So the share is
+  // a thousandth of the times that a smoothing length evens out within the step.
   double pore_share(const World<Dim>& world, Index i) const {
-    const double n = water_->scalar(fields::water_fraction)[i], speed = water_->vector(fields::velocity)[i].norm();
-    const double drag = water_->scalar(fields::drag_linear)[i] + water_->scalar(fields::drag_quadratic)[i] * speed;
+    const double n = water_->scalar(fields::water_fraction)[i],
+                 speed = water_->vector(fields::velocity)[i].norm();
+    const double drag =
+        water_->scalar(fields::drag_linear)[i] + water_->scalar(fields::drag_quadratic)[i] * speed;
     const double evening = n * water_->constant("sound_speed") / water_->smoothing_length();
-    const double steps = 1e-3 * evening * evening * water_->constant("density") * world.clock.dt_advection;
+    const double steps =
+        1e-3 * evening * evening * water_->constant("density") * world.clock.dt_advection;
     return steps < drag ? steps / drag : 1.0;
   }
 
-  // Where that is little, the errors of a whole layer add up before they drain: there the sum only keeps the density within two
-  // percent, and the continuity equation moves it.
+  // Where that is little, the errors of a whole layer add up before they drain: there the sum only
+  // keeps the density within two percent, and the continuity equation moves it.
   static double pore_change(double share, double difference, double rho0) {
     const double margin = 0.02 * rho0 * (1 - share);
     return share * std::copysign(std::max(0.0, std::abs(difference) - margin), difference);
   }
 
-  // The moment of the particles around says how weak their sums are; where it is cut off at a surface, that of a lattice does.
+  // The moment of the particles around says how weak their sums are; where it is cut off at a
+  // surface, that of a lattice does.
   double gradient_factor(double moment, double lattice) const {
     const double full = std::clamp((moment / lattice - 0.85) / 0.1, 0.0, 1.0);
     return std::sqrt(moment_ / (full * moment + (1 - full) * lattice));
   }
 
-  // P^p of Eqs. 88 and 89 on the sum of gradients: where the porosity changes within a smoothing length, the spacing changes
-  // with it, and the shift would even out what is meant to be uneven.
+  // P^p of Eqs. 88 and 89 on the sum of gradients: where the porosity changes within a smoothing
+  // length, the spacing changes with it, and the shift would even out what is meant to be uneven.
   Vec<Dim> projected(const World<Dim>& world, const Arrangement<Dim>& s) const {
     const Numerics& n = world.model().numerics;
-    if (!n.transport_projection || water_->smoothing_length() * s.fraction.norm() <= n.transport_projection_threshold) return s.gradient;
+    if (!n.transport_projection ||
+        water_->smoothing_length() * s.fraction.norm() <= n.transport_projection_threshold)
+      return s.gradient;
     Vec<Dim> normal = s.fraction;
     if (std::abs(s.moment.determinant()) > 1e-3) normal = s.moment.inverse() * s.fraction;
     normal.normalize();
@@ -281,9 +304,10 @@ class WaterReinitialization final : public Effect<Dim> {
   }
 
   // Eq. 87 with the sign that leads away from crowded places. Wherever the kernel reaches the free
-  // surface, its truncation looks like a rarefaction, much stronger than any real one. Eq. 87 keeps the
-  // part along the surface; as the normal is never exact, what is left stirs still water (kinetic energy
-  // three times as high, 15 spacings deep in 3D), so the default leaves these particles alone.
+  // surface, its truncation looks like a rarefaction, much stronger than any real one. Eq. 87 keeps
+  // the part along the surface; as the normal is never exact, what is left stirs still water
+  // (kinetic energy three times as high, 15 spacings deep in 3D), so the default leaves these
+  // particles alone.
   template <class T>
   void shift(World<Dim>& world) {
     using Pair = SurfacePair<Dim>;
@@ -293,41 +317,45 @@ class WaterReinitialization final : public Effect<Dim> {
     auto& x = water_->vector(fields::position);
     const Field<double>* share = volume_share(world);
     const Field<Vec<Dim>>* a = porous_ ? &water_->vector(fields::acceleration) : nullptr;
-    const Field<Vec<Dim>>* drag = water_->has(fields::drag_acceleration) ? &water_->vector(fields::drag_acceleration) : nullptr;
+    const Field<Vec<Dim>>* drag = water_->has(fields::drag_acceleration)
+                                      ? &water_->vector(fields::drag_acceleration)
+                                      : nullptr;
     auto& rho = water_->scalar(fields::density);
     const double sound = water_->constant("sound_speed");
     const auto& first = world.records("water", 0).template get<T>();
     const auto& second = world.records("water", 1).template get<T>();
-    gather<Pair::template Sums>(
-        world.list("water", "water"), first, with(first, second), Pair{Kernel<Dim>(h)},
-        [&](Index i, const auto& near) {
-          const T* slot = second[i] - record_size;
-          const bool surface = slot[Pair::on_surface] > 0;
-          Vec<Dim> move, normal;
-          for (int k = 0; k < Dim; ++k) {
-            move[k] = -factor * static_cast<double>(slot[Pair::gradient + k]);
-            normal[k] = static_cast<double>(slot[Pair::surface_normal + k]);
-          }
-          if (surface || near.share > 0) {
-            if (!tangential) return;
-            // The list leaves the particle itself out.
-            const double weight = near.share + (surface ? 1.0 : 0.0);
-            const Vec<Dim> mean = to_vec(near.normal) + normal;
-            // Surfaces that face each other, as of a thin film or a lonely particle, leave no
-            // direction along which anything may move.
-            const double length = mean.norm();
-            if (length < 0.5 * weight) return;
-            move -= (mean.dot(move) / (length * length)) * mean;
-          }
-          x[i] += move;
-          if (share && (*share)[i] < 1) {
-            // It comes to another pressure, grad p = rho (g - dv/dt + drag), and takes it over. Were it to keep its own, it would flow
-            // back, for ever, and the soil would feel the drag of that flow.
-            Vec<Dim> pull = world.pull(x[i]) - (*a)[i];
-            if (drag) pull += (*drag)[i];
-            rho[i] += rho[i] * pull.dot(move) / (sound * sound);
-          }
-        });
+    gather<Pair::template Sums>(world.list("water", "water"), first, with(first, second),
+                                Pair{Kernel<Dim>(h)}, [&](Index i, const auto& near) {
+                                  const T* slot = second[i] - record_size;
+                                  const bool surface = slot[Pair::on_surface] > 0;
+                                  Vec<Dim> move, normal;
+                                  for (int k = 0; k < Dim; ++k) {
+                                    move[k] =
+                                        -factor * static_cast<double>(slot[Pair::gradient + k]);
+                                    normal[k] = static_cast<double>(slot[Pair::surface_normal + k]);
+                                  }
+                                  if (surface || near.share > 0) {
+                                    if (!tangential) return;
+                                    // The list leaves the particle itself out.
+                                    const double weight = near.share + (surface ? 1.0 : 0.0);
+                                    const Vec<Dim> mean = to_vec(near.normal) + normal;
+                                    // Surfaces that face each other, as of a thin film or a lonely
+                                    // particle, leave no direction along which anything may move.
+                                    const double length = mean.norm();
+                                    if (length < 0.5 * weight) return;
+                                    move -= (mean.dot(move) / (length * length)) * mean;
+                                  }
+                                  x[i] += move;
+                                  if (share && (*share)[i] < 1) {
+                                    // It comes to another pressure, grad p = rho (g - dv/dt +
+                                    // drag), and takes it over. Were it to keep its own, it would
+                                    // flow back, for ever, and the soil would feel the drag of that
+                                    // flow.
+                                    Vec<Dim> pull = world.pull(x[i]) - (*a)[i];
+                                    if (drag) pull += (*drag)[i];
+                                    rho[i] += rho[i] * pull.dot(move) / (sound * sound);
+                                  }
+                                });
   }
 
   // Outward normal of the free surface at one particle, corrected for the disorder around it; zero

@@ -25,28 +25,34 @@ template <int Dim>
 class WaterWallContinuity final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"water_wall_continuity", Stage::rate, "Eqs. 58, 95", "divergence and density dissipation against walls", false};
+    return {"water_wall_continuity", Stage::rate, "Eqs. 58, 95",
+            "divergence and density dissipation against walls", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     return bind_walls<WaterWallContinuity>(world, "water");
   }
 
-  WaterWallContinuity(const World<Dim>& world, std::string walls) : walls_(std::move(walls)), porous_(volume_follows_porosity(world)) {}
+  WaterWallContinuity(const World<Dim>& world, std::string walls)
+      : walls_(std::move(walls)), porous_(volume_follows_porosity(world)) {}
 
   std::string acts_on() const override { return near_walls("water", walls_); }
   Needs needs() const override {
-    Needs n{{{"water", &fields::density, Access::read}, {"water", &fields::density_rate, Access::add}}, {}};
+    Needs n{
+        {{"water", &fields::density, Access::read}, {"water", &fields::density_rate, Access::add}},
+        {}};
     need_walls(n, "water", {walls_});
     if (porous_) {
       n.fields.push_back({"water", &fields::water_fraction, Access::read});
-      n.fields.push_back({"water", &fields::soil_velocity, Access::read});  // the records hold the mixture's
+      n.fields.push_back(
+          {"water", &fields::soil_velocity, Access::read});  // the records hold the mixture's
     }
     return n;
   }
   void prepare(World<Dim>& world) override { water_ = &world.set("water"); }
 
   void apply(World<Dim>& world) override {
-    const WallDivergence<Dim> pair{WallPair<Dim>(WaterConstants::of(world), water_->smoothing_length(), water_->spacing())};
+    const WallDivergence<Dim> pair{
+        WallPair<Dim>(WaterConstants::of(world), water_->smoothing_length(), water_->spacing())};
     const auto& rho = water_->scalar(fields::density);
     auto& rate = water_->scalar(fields::density_rate);
     const Field<double>* n = volume_share(world);
@@ -55,8 +61,12 @@ class WaterWallContinuity final : public Effect<Dim> {
       using T = decltype(number);
       gather<WallDivergence<Dim>::template Sums>(
           world.list("water", walls_), world.records("water").template get<T>(),
-          with(world.records(walls_, 0).template get<T>(), world.records(walls_, 1).template get<T>()), pair,
-          [&](Index i, const auto& sum) { rate[i] += rho[i] * (n ? (*scale)[i] * (*scale)[i] * sum.divergence / (*n)[i] : sum.divergence); });
+          with(world.records(walls_, 0).template get<T>(),
+               world.records(walls_, 1).template get<T>()),
+          pair, [&](Index i, const auto& sum) {
+            rate[i] += rho[i] *
+                       (n ? (*scale)[i] * (*scale)[i] * sum.divergence / (*n)[i] : sum.divergence);
+          });
     });
   }
 

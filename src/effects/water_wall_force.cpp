@@ -42,21 +42,25 @@ template <int Dim>
 class WaterWallForce final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"water_wall_force", Stage::force, "Eqs. 73, 74", "pressure (one-sided Riemann) and friction of walls on the water", false};
+    return {"water_wall_force", Stage::force, "Eqs. 73, 74",
+            "pressure (one-sided Riemann) and friction of walls on the water", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     return bind_walls<WaterWallForce>(world, "water");
   }
 
-  WaterWallForce(const World<Dim>& world, std::string walls) : walls_(std::move(walls)), porous_(world.find("soil") != nullptr) {
+  WaterWallForce(const World<Dim>& world, std::string walls)
+      : walls_(std::move(walls)), porous_(world.find("soil") != nullptr) {
     if (porous_) need_volume_share(world, volume_);
   }
 
   std::string acts_on() const override { return near_walls("water", walls_); }
   Needs needs() const override {
-    Needs n{{{"water", &fields::density, Access::read}, {"water", &fields::pressure, Access::read},
+    Needs n{{{"water", &fields::density, Access::read},
+             {"water", &fields::pressure, Access::read},
              {"water", &fields::acceleration, Access::read},
-             {"water", &fields::acceleration_sum, Access::add}}, {}};
+             {"water", &fields::acceleration_sum, Access::add}},
+            {}};
     need_walls(n, "water", {walls_});
     n.fields.insert(n.fields.end(), volume_.fields.begin(), volume_.fields.end());
     if (porous_) n.fields.push_back({"water", &fields::pressure_force, Access::add});
@@ -88,9 +92,12 @@ class WaterWallForce final : public Effect<Dim> {
       using T = decltype(number);
       pack_water_pull(world, list, world.records("water", 1).template get<T>());
       gather<Pair::template Sums>(
-          list, with(world.records("water", 0).template get<T>(), world.records("water", 1).template get<T>()),
-          with(world.records(walls_, 0).template get<T>(), world.records(walls_, 1).template get<T>()), pair,
-          [&](Index i, const auto& sum) {
+          list,
+          with(world.records("water", 0).template get<T>(),
+               world.records("water", 1).template get<T>()),
+          with(world.records(walls_, 0).template get<T>(),
+               world.records(walls_, 1).template get<T>()),
+          pair, [&](Index i, const auto& sum) {
             if constexpr (porous) {
               Vec<Dim> pressure = to_vec(sum.pressure);
               if (scale) pressure *= (*scale)[i] * (*scale)[i];

@@ -17,17 +17,21 @@ namespace {
 
 const WallBoundary* absorbing(const BoundarySpec* boundary) {
   const auto* wall = dynamic_cast<const WallBoundary*>(boundary);
-  return wall && wall->motion && wall->motion->waves && wall->motion->waves->absorb ? wall : nullptr;
+  return wall && wall->motion && wall->motion->waves && wall->motion->waves->absorb ? wall
+                                                                                    : nullptr;
 }
 
-/// The speed by which a piston takes up waves that come back to it: that of water under a wave as high as what gauges before the
-/// piston see beyond its own waves (Schaeffer and Klopman 2000). wall_motion moves it.
+/// The speed by which a piston takes up waves that come back to it: that of water under a wave as
+/// high as what gauges before the piston see beyond its own waves (Schaeffer and Klopman 2000).
+/// wall_motion moves it.
 template <int Dim>
 class WaveAbsorption final : public Effect<Dim> {
  public:
-  explicit WaveAbsorption(const WallBoundary& piston) : piston_(piston), waves_(*piston.motion->waves) {}
+  explicit WaveAbsorption(const WallBoundary& piston)
+      : piston_(piston), waves_(*piston.motion->waves) {}
   static EffectInfo info() {
-    return {"wave_absorption", Stage::exchange, "prescribed", "what a piston moves to take up waves that come back to it", false};
+    return {"wave_absorption", Stage::exchange, "prescribed",
+            "what a piston moves to take up waves that come back to it", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     Binding<Dim> binding("no boundary takes up waves");
@@ -67,28 +71,40 @@ class WaveAbsorption final : public Effect<Dim> {
     if (now < motion.from || (motion.until && now >= *motion.until)) return;
     // Not in prepare(): a run that goes on has no particles yet when it gets there.
     if (gauges_.empty()) place_gauges(world);
-    const std::optional<double> level = level_before_it(motion.position(front_, now) + state_->shift * waves_.direction);
+    const std::optional<double> level =
+        level_before_it(motion.position(front_, now) + state_->shift * waves_.direction);
     if (!level) return;
-    const double distance = waves_.direction.dot(motion.position(front_, now) - front_) + state_->shift + ahead();
-    const double seen = *level - waves_.elevation(distance, now - motion.from) - waves_.evanescent(distance) * state_->shift;
-    // The level is told from its own slow mean: water at rest, and what waves pile up, must not make the piston drift.
+    const double distance =
+        waves_.direction.dot(motion.position(front_, now) - front_) + state_->shift + ahead();
+    const double seen = *level - waves_.elevation(distance, now - motion.from) -
+                        waves_.evanescent(distance) * state_->shift;
+    // The level is told from its own slow mean: water at rest, and what waves pile up, must not
+    // make the piston drift.
     const double slow = 5 * waves_.period;
     *mean_ = *begun_ == 0 ? seen : *mean_ + (seen - *mean_) * -std::expm1(-passed / slow);
     *begun_ = 1;
     const double fastest = waves_.absorbing_rate() * waves_.height;
-    state_->wanted = std::clamp(-waves_.absorbing_rate() * (seen - *mean_) - state_->shift / slow, -fastest, fastest);
+    state_->wanted = std::clamp(-waves_.absorbing_rate() * (seen - *mean_) - state_->shift / slow,
+                                -fastest, fastest);
   }
 
   std::size_t bytes() const override { return gauges_.capacity() * sizeof(Vec3); }
   void tally(std::vector<Tally>& out) const override {
-    out.push_back({"piston_shift_" + piston_.name, "m", "how far boundary '" + piston_.name + "' is from where its waves alone would have it", state_->shift});
+    out.push_back(
+        {"piston_shift_" + piston_.name, "m",
+         "how far boundary '" + piston_.name + "' is from where its waves alone would have it",
+         state_->shift});
   }
 
  private:
   /// Gauges stand where a kernel just misses the piston.
   double ahead() const { return kernel_.support(); }
-  /// What comes back reaches the gauges earlier than the piston by their distance: a welcome time to smooth over.
-  double lag() const { return std::max(ahead() * waves_.wave_number() * waves_.period / (2 * std::numbers::pi), waves_.period / 40); }
+  /// What comes back reaches the gauges earlier than the piston by their distance: a welcome time
+  /// to smooth over.
+  double lag() const {
+    return std::max(ahead() * waves_.wave_number() * waves_.period / (2 * std::numbers::pi),
+                    waves_.period / 40);
+  }
 
   /// A row along the front of the piston, as far as it reaches.
   void place_gauges(const World<Dim>& world) {
@@ -96,7 +112,9 @@ class WaveAbsorption final : public Effect<Dim> {
     const Vec3 along = waves_.direction.cross(Vec3::UnitZ());
     double front = -INFINITY, low = INFINITY, high = -INFINITY;
     for (Index i = 0; i < walls.size(); ++i) {
-      if (world.model().boundaries[static_cast<std::size_t>(walls.tag(fields::part)[i])].get() != &piston_) continue;
+      if (world.model().boundaries[static_cast<std::size_t>(walls.tag(fields::part)[i])].get() !=
+          &piston_)
+        continue;
       const Vec3 x = to_space<Dim>(walls.vector(fields::reference_position)[i]);
       front = std::max(front, waves_.direction.dot(x));
       low = std::min(low, along.dot(x));
@@ -104,8 +122,10 @@ class WaveAbsorption final : public Effect<Dim> {
     }
     front_ = (front + 0.5 * walls.spacing()) * waves_.direction;
     const double apart = 4 * water_->spacing();
-    const int count = std::isfinite(low) ? std::clamp(static_cast<int>((high - low) / apart), 1, 8) : 0;
-    for (int k = 0; k < count; ++k) gauges_.push_back((low + (high - low) * (k + 0.5) / count) * along);
+    const int count =
+        std::isfinite(low) ? std::clamp(static_cast<int>((high - low) / apart), 1, 8) : 0;
+    for (int k = 0; k < count; ++k)
+      gauges_.push_back((low + (high - low) * (k + 0.5) / count) * along);
   }
 
   /// Mean height of the surface at the gauges that have water.
@@ -135,7 +155,8 @@ class WaveAbsorption final : public Effect<Dim> {
         place.z() = z;
         const Vec<Dim> here = to_scene<Dim>(place);
         double share = 0;
-        for (const Index i : near[g]) share += mass[i] / density * kernel_.w((x[i] - here).squaredNorm());
+        for (const Index i : near[g])
+          share += mass[i] / density * kernel_.w((x[i] - here).squaredNorm());
         return share;
       };
       if (const auto z = surface_height(top, bottom, water_->spacing(), filled)) {
@@ -149,8 +170,8 @@ class WaveAbsorption final : public Effect<Dim> {
   const WallBoundary& piston_;
   const Waves& waves_;
   Kernel<Dim> kernel_;
-  Vec3 front_ = Vec3::Zero();    ///< a point of the piston's face at rest
-  std::vector<Vec3> gauges_;     ///< along the face, from there
+  Vec3 front_ = Vec3::Zero();  ///< a point of the piston's face at rest
+  std::vector<Vec3> gauges_;   ///< along the face, from there
   std::optional<PistonState> state_;
   double *mean_ = nullptr, *begun_ = nullptr, *last_ = nullptr;
   ParticleSet<Dim>* water_ = nullptr;

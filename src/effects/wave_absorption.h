@@ -7,7 +7,8 @@
 
 namespace sphgeo {
 
-/// Its motion beside the one that the deck prescribes, along the direction of its waves; all zero at first, saved and loaded.
+/// Its motion beside the one that the deck prescribes, along the direction of its waves; all zero
+/// at first, saved and loaded.
 struct PistonState {
   double& wanted;  ///< speed that would take up what comes, m/s
   double& lag;     ///< time in which it gets to that speed, s
@@ -16,9 +17,13 @@ struct PistonState {
 
   template <int Dim>
   PistonState(World<Dim>& world, const std::string& boundary)
-      : wanted(world.kept(key(boundary, "wanted"))), lag(world.kept(key(boundary, "lag"))), speed(world.kept(key(boundary, "speed"))),
+      : wanted(world.kept(key(boundary, "wanted"))),
+        lag(world.kept(key(boundary, "lag"))),
+        speed(world.kept(key(boundary, "speed"))),
         shift(world.kept(key(boundary, "shift"))) {}
-  static std::string key(const std::string& boundary, const std::string& name) { return "wave_absorption/" + boundary + "/" + name; }
+  static std::string key(const std::string& boundary, const std::string& name) {
+    return "wave_absorption/" + boundary + "/" + name;
+  }
 };
 
 }  // namespace sphgeo

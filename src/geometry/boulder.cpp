@@ -10,7 +10,8 @@
 namespace sphgeo {
 namespace {
 
-/// A stone: a ball (in 2D a disc) with smooth seeded bumps. The surface is r = radius (1 + bumps(direction)).
+/// A stone: a ball (in 2D a disc) with smooth seeded bumps. The surface is r = radius (1 +
+/// bumps(direction)).
 struct Boulder final : SceneShape {
   Vec3 center = Vec3::Zero();
   double radius = 0;
@@ -20,10 +21,15 @@ struct Boulder final : SceneShape {
   static constexpr int waves = 12;
 
   static Schema<Boulder> schema() {
-    Schema<Boulder> s("boulder", "A stone: a ball, in 2D a disc, whose radius varies smoothly and at random from direction to direction.");
+    Schema<Boulder> s("boulder",
+                      "A stone: a ball, in 2D a disc, whose radius varies smoothly and at random "
+                      "from direction to direction.");
     s.required("center", &Boulder::center, unit::length, "The middle.");
     s.required("radius", &Boulder::radius, unit::length, "The mean radius.").above(0);
-    s.optional("roughness", &Boulder::roughness, unit::none, "Largest deviation of the radius, as a part of it.").at_least(0).at_most(0.4);
+    s.optional("roughness", &Boulder::roughness, unit::none,
+               "Largest deviation of the radius, as a part of it.")
+        .at_least(0)
+        .at_most(0.4);
     s.optional("seed", &Boulder::seed, unit::none, "Another seed, another stone.").at_least(0);
     s.check([](Boulder& b, CheckContext& c) {
       set_scene(b, c);
@@ -32,7 +38,8 @@ struct Boulder final : SceneShape {
     return s;
   }
 
-  /// Plane waves of 1.5 to 3 periods around, cut at y = 0 in 2D; their amplitudes add up to `roughness` at most.
+  /// Plane waves of 1.5 to 3 periods around, cut at y = 0 in 2D; their amplitudes add up to
+  /// `roughness` at most.
   void prepare() {
     std::uint64_t draw = 0;
     const auto uniform = [&] { return random_uniform(static_cast<std::uint64_t>(seed), draw++); };
@@ -41,17 +48,20 @@ struct Boulder final : SceneShape {
       const double z = 2 * uniform() - 1, angle = 2 * std::numbers::pi * uniform();
       const double across = std::sqrt(1 - z * z);
       const double number = 1.5 + 1.5 * uniform();
-      w.k = number * (flat ? Vec3(std::cos(angle), 0, std::sin(angle)) : Vec3(across * std::cos(angle), across * std::sin(angle), z));
+      w.k = number * (flat ? Vec3(std::cos(angle), 0, std::sin(angle))
+                           : Vec3(across * std::cos(angle), across * std::sin(angle), z));
       w.phase = 2 * std::numbers::pi * uniform();
       w.amplitude = 1 / number;
       sum += w.amplitude;
     }
-    // Waves out of step never add up to the sum: about its square root, times the largest of a few directions.
+    // Waves out of step never add up to the sum: about its square root, times the largest of a few
+    // directions.
     for (Wave& w : waves_) w.amplitude *= 2.5 * roughness / sum;
   }
 
-  /// Radius less that of the surface, over the length of its gradient: exact to first order at the surface, where the
-  /// slope of the bumps tilts it. The slope is that at the surface, also for points near the middle.
+  /// Radius less that of the surface, over the length of its gradient: exact to first order at the
+  /// surface, where the slope of the bumps tilts it. The slope is that at the surface, also for
+  /// points near the middle.
   double signed_distance(const Vec3& at) const override {
     Vec3 d = at - center;
     if (flat) d.y() = 0;

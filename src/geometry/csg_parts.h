@@ -26,9 +26,11 @@ inline std::vector<Aabb> boxes_of(const std::vector<ShapePtr>& parts, bool flat)
   return out;
 }
 
-/// Whether a part is at least `distance` away from a point outside of its box: then what is asked of it changes nothing, and
-/// need not be computed. `boxes` may be empty, for shapes that no deck made.
-inline bool farther(const std::vector<Aabb>& boxes, std::size_t part, const Vec3& at, double distance) {
+/// Whether a part is at least `distance` away from a point outside of its box: then what is asked
+/// of it changes nothing, and need not be computed. `boxes` may be empty, for shapes that no deck
+/// made.
+inline bool farther(const std::vector<Aabb>& boxes, std::size_t part, const Vec3& at,
+                    double distance) {
   if (part >= boxes.size()) return false;
   const double d2 = (boxes[part].lo - at).cwiseMax(at - boxes[part].hi).cwiseMax(0.0).squaredNorm();
   return d2 > 0.0 && (distance <= 0.0 || d2 >= distance * distance);

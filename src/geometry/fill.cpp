@@ -97,10 +97,11 @@ std::vector<Vec3> collect(const Aabb& box, const Vec3& origin, double dp, int di
 
 void refuse_absurd(double expected) {
   if (!(expected <= largest_fill))
-    throw Error(ExitCode::usage,
-                fmt::format("the shape would take about {:.3g} particles: is the resolution or a length "
-                            "in the wrong unit?",
-                            expected));
+    throw Error(
+        ExitCode::usage,
+        fmt::format("the shape would take about {:.3g} particles: is the resolution or a length "
+                    "in the wrong unit?",
+                    expected));
 }
 
 double volume(const Aabb& box, int dim) {
@@ -128,8 +129,8 @@ Vec3 default_origin(const Shape& shape, const Aabb& clip) {
 
 namespace {
 
-/// Volume (area in 2D) within `box`, on a coarse grid: share(d, reach) is how much of a cell whose centre
-/// lies at the distance d counts, where the cell reaches from d - reach to d + reach.
+/// Volume (area in 2D) within `box`, on a coarse grid: share(d, reach) is how much of a cell whose
+/// centre lies at the distance d counts, where the cell reaches from d - reach to d + reach.
 double sampled_volume(const Aabb& box, int dim, const std::function<double(const Vec3&)>& distance,
                       const std::function<double(double d, double reach)>& share) {
   const int n = dim == 3 ? 16 : 64;
@@ -179,7 +180,10 @@ double estimate_layers(const Shape& shape, double dp, int dim, double thickness,
   if (!box.lo.allFinite() || !box.hi.allFinite()) return std::numeric_limits<double>::infinity();
   const double sign = outside ? -1.0 : 1.0;
   return sampled_volume(
-             box, dim, [&](const Vec3& p) { return sign * shape.bound(p); },  // exact ones of composed shapes are dear
+             box, dim,
+             [&](const Vec3& p) {
+               return sign * shape.bound(p);
+             },  // exact ones of composed shapes are dear
              [&](double d, double reach) { return overlap(d, reach, -thickness, 0.0); }) /
          std::pow(dp, dim);
 }
@@ -202,7 +206,8 @@ std::vector<Vec3> fill_lattice(const Shape& shape, double dp, int dim, const Aab
 double cut_volume(const Shape& shape, double dp, int dim) {
   const Aabb box = in_scene(shape.box().grown(dp), dim);
   refuse_unbounded(box);
-  if (const double lattice = lattice_points(box, dp, dim); !(lattice <= largest_lattice)) refuse_absurd(lattice);
+  if (const double lattice = lattice_points(box, dp, dim); !(lattice <= largest_lattice))
+    refuse_absurd(lattice);
   const Vec3 origin = default_origin(shape, {}) - Vec3::Constant(dp);
   const double reach = 0.5 * dp;
   double cells = 0;

@@ -24,8 +24,8 @@ double estimate_fill(const Shape& shape, double dp, int dim, const Aabb& clip);
 std::vector<Vec3> fill_lattice(const Shape& shape, double dp, int dim, const Aabb& clip = {},
                                std::optional<Vec3> origin = std::nullopt);
 
-/// Volume (area in 2D) of the shape, the cells of fill_lattice's lattice cut by the surface: exact for boxes, good to the square
-/// of the spacing for smooth shapes. Throws as fill_lattice.
+/// Volume (area in 2D) of the shape, the cells of fill_lattice's lattice cut by the surface: exact
+/// for boxes, good to the square of the spacing for smooth shapes. Throws as fill_lattice.
 double cut_volume(const Shape& shape, double dp, int dim);
 
 enum class LayerSide { inside, outside };

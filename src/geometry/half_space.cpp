@@ -17,8 +17,7 @@ Schema<HalfSpace> HalfSpace::schema() {
     if (h.normal.isZero(0))
       c.error("normal", "the normal has no direction",
               h.flat ? "in 2D give its x and z components" : "give a vector such as [0, 0, 1]");
-    else
-      h.prepare();
+    else h.prepare();
   });
   return s;
 }

@@ -80,8 +80,9 @@ void HeightField::prepare() {
     v = scale * v + origin.z();
     if (!(std::abs(v) <= longest)) fail("a height of " + exact(v) + " m: is `scale` right?");
   }
-  const double end = std::max(std::abs(origin.x()) + static_cast<double>(nx) * spacing,
-                              std::abs(origin.y()) + static_cast<double>(ny) * spacing_y.value_or(spacing));
+  const double end =
+      std::max(std::abs(origin.x()) + static_cast<double>(nx) * spacing,
+               std::abs(origin.y()) + static_cast<double>(ny) * spacing_y.value_or(spacing));
   if (!(end <= longest)) fail("the terrain reaches " + exact(end) + " m: is `spacing` right?");
   nx_ = static_cast<int>(nx);
   ny_ = static_cast<int>(ny);
@@ -143,14 +144,19 @@ double HeightField::patch_distance_squared(const Vec3& p, std::int32_t cell, dou
   // the twist kept, clamped to the square. Any (u, v) is on the patch, so the best seen is safe.
   const double c0 = node(i, j), cu = node(i + 1, j) - c0, cv = node(i, j + 1) - c0;
   const double cuv = node(i + 1, j + 1) - c0 - cu - cv;
-  // Without its twist the patch is a part of a plane, no farther than w from it. Far from the ground almost all patches end here.
+  // Without its twist the patch is a part of a plane, no farther than w from it. Far from the
+  // ground almost all patches end here.
   {
     const double zu = cu + 0.5 * cuv, zv = cv + 0.5 * cuv, w = 0.25 * std::abs(cuv);
-    const double fall = c0 - 0.25 * cuv + zu * (p.x() - x0) / spacing + zv * (p.y() - y0) / dy_ - p.z();
-    // Foot of the perpendicular on the plane, in (u, v), and how far it is outside of the square, m.
+    const double fall =
+        c0 - 0.25 * cuv + zu * (p.x() - x0) / spacing + zv * (p.y() - y0) / dy_ - p.z();
+    // Foot of the perpendicular on the plane, in (u, v), and how far it is outside of the square,
+    // m.
     const double su = zu / spacing, sv = zv / dy_, drop = fall / (1.0 + su * su + sv * sv);
-    const double foot_u = (p.x() - su * drop - x0) / spacing, foot_v = (p.y() - sv * drop - y0) / dy_;
-    const double out_u = spacing * std::max({0.0, -foot_u, foot_u - 1.0}), out_v = dy_ * std::max({0.0, -foot_v, foot_v - 1.0});
+    const double foot_u = (p.x() - su * drop - x0) / spacing,
+                 foot_v = (p.y() - sv * drop - y0) / dy_;
+    const double out_u = spacing * std::max({0.0, -foot_u, foot_u - 1.0}),
+                 out_v = dy_ * std::max({0.0, -foot_v, foot_v - 1.0});
     const double least = std::sqrt(fall * drop + out_u * out_u + out_v * out_v) - w;
     if (least > 0.0 && least * least > best) return std::numeric_limits<double>::infinity();
   }
@@ -175,7 +181,8 @@ double HeightField::patch_distance_squared(const Vec3& p, std::int32_t cell, dou
     u = std::clamp(u - (hvv * gu - huv * gv) / det, 0.0, 1.0);
     v = std::clamp(v - (huu * gv - huv * gu) / det, 0.0, 1.0);
   }
-  // A clamped Newton step may stop short on an edge; the four edges are straight and exact. Inside, the search has converged.
+  // A clamped Newton step may stop short on an edge; the four edges are straight and exact. Inside,
+  // the search has converged.
   if (u > 0.0 && u < 1.0 && v > 0.0 && v < 1.0) return best2;
   const Vec3 a{x0, y0, c0}, b{x0 + spacing, y0, node(i + 1, j)}, c{x0, y0 + dy_, node(i, j + 1)},
       d{x0 + spacing, y0 + dy_, node(i + 1, j + 1)};

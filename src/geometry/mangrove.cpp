@@ -11,8 +11,9 @@
 namespace sphgeo {
 namespace {
 
-/// A tree on stilt roots: chains of capsules that leave the trunk, bend over and run down to the ground, some with a branch
-/// (after the Rhizophora of flume experiments: arches that are parabolas of the distance from the trunk).
+/// A tree on stilt roots: chains of capsules that leave the trunk, bend over and run down to the
+/// ground, some with a branch (after the Rhizophora of flume experiments: arches that are parabolas
+/// of the distance from the trunk).
 struct Mangrove final : SceneShape {
   Vec3 foot = Vec3::Zero();
   double trunk_radius = 0, height = 0;
@@ -24,21 +25,43 @@ struct Mangrove final : SceneShape {
   Index seed = 1;
 
   static Schema<Mangrove> schema() {
-    Schema<Mangrove> s("mangrove", "A tree on stilt roots: a trunk, and arched roots made of capsules. In 2D its section with the plane y = 0.");
+    Schema<Mangrove> s("mangrove",
+                       "A tree on stilt roots: a trunk, and arched roots made of capsules. In 2D "
+                       "its section with the plane y = 0.");
     s.required("foot", &Mangrove::foot, unit::length, "The point of the ground below the trunk.");
-    s.required("height", &Mangrove::height, unit::length, "Of the top of the trunk above the foot.").above(0);
-    s.required("trunk_radius", &Mangrove::trunk_radius, unit::length, "Radius of the trunk, which begins where the highest root leaves it.").above(0);
-    s.required("root_radius", &Mangrove::root_radius, unit::length, "Radius of a root at the trunk; it tapers to 0.6 of that at the ground.").above(0);
-    s.required("root_height", &Mangrove::root_height, unit::length, "Largest height at which a root leaves the trunk; the least is 0.4 of it.").above(0);
-    s.required("spread", &Mangrove::spread, unit::length, "Largest distance from the trunk at which a root reaches the ground; the least is half of it.").above(0);
-    s.optional("roots", &Mangrove::roots, unit::none, "How many leave the trunk.").at_least(1).at_most(500);
-    s.optional("branching", &Mangrove::branching, unit::none, "Part of the roots that have a branch.").at_least(0).at_most(1);
-    s.optional("below", &Mangrove::below, unit::length, "How far the roots go on below the foot.").at_least(0);
-    s.optional("segments", &Mangrove::segments, unit::none, "Capsules in a root.").at_least(2).at_most(100);
+    s.required("height", &Mangrove::height, unit::length, "Of the top of the trunk above the foot.")
+        .above(0);
+    s.required("trunk_radius", &Mangrove::trunk_radius, unit::length,
+               "Radius of the trunk, which begins where the highest root leaves it.")
+        .above(0);
+    s.required("root_radius", &Mangrove::root_radius, unit::length,
+               "Radius of a root at the trunk; it tapers to 0.6 of that at the ground.")
+        .above(0);
+    s.required("root_height", &Mangrove::root_height, unit::length,
+               "Largest height at which a root leaves the trunk; the least is 0.4 of it.")
+        .above(0);
+    s.required("spread", &Mangrove::spread, unit::length,
+               "Largest distance from the trunk at which a root reaches the ground; the least is "
+               "half of it.")
+        .above(0);
+    s.optional("roots", &Mangrove::roots, unit::none, "How many leave the trunk.")
+        .at_least(1)
+        .at_most(500);
+    s.optional("branching", &Mangrove::branching, unit::none,
+               "Part of the roots that have a branch.")
+        .at_least(0)
+        .at_most(1);
+    s.optional("below", &Mangrove::below, unit::length, "How far the roots go on below the foot.")
+        .at_least(0);
+    s.optional("segments", &Mangrove::segments, unit::none, "Capsules in a root.")
+        .at_least(2)
+        .at_most(100);
     s.optional("seed", &Mangrove::seed, unit::none, "Another seed, another tree.").at_least(0);
     s.check([](Mangrove& m, CheckContext& c) {
       set_scene(m, c);
-      if (m.root_height > m.height) c.error("root_height", "roots leave the trunk above its top", "a height below that of the trunk");
+      if (m.root_height > m.height)
+        c.error("root_height", "roots leave the trunk above its top",
+                "a height below that of the trunk");
       m.grow();
     });
     return s;
@@ -66,9 +89,12 @@ struct Mangrove final : SceneShape {
     double radius, reach;
   };
 
-  void add(const Vec3& a, const Vec3& b, double radius) { pieces_.push_back({a, b, 0.5 * (a + b), radius, 0.5 * (b - a).norm() + radius}); }
+  void add(const Vec3& a, const Vec3& b, double radius) {
+    pieces_.push_back({a, b, 0.5 * (a + b), radius, 0.5 * (b - a).norm() + radius});
+  }
 
-  /// A parabola from `start` that leaves with a fifth of its mean slope, bends down and ends at `end`.
+  /// A parabola from `start` that leaves with a fifth of its mean slope, bends down and ends at
+  /// `end`.
   void arch(const Vec3& start, const Vec3& end, double radius, double tip) {
     Vec3 last = start;
     for (int k = 1; k <= segments; ++k) {
@@ -84,7 +110,9 @@ struct Mangrove final : SceneShape {
   void grow() {
     pieces_.clear();
     std::uint64_t draw = 0;
-    const auto uniform = [&](double low, double high) { return low + (high - low) * random_uniform(static_cast<std::uint64_t>(seed), draw++); };
+    const auto uniform = [&](double low, double high) {
+      return low + (high - low) * random_uniform(static_cast<std::uint64_t>(seed), draw++);
+    };
     trunk_[0] = foot + Vec3(0, 0, 0.4 * root_height);
     trunk_[1] = foot + Vec3(0, 0, height);
     for (int k = 0; k < roots; ++k) {
@@ -98,7 +126,8 @@ struct Mangrove final : SceneShape {
       Vec3 fork = start + at * (end - start);
       fork.z() += 0.8 * at * (1 - at) * from;
       const Vec3 across(-out.y(), out.x(), 0);
-      arch(fork, foot + 0.8 * far * out + 0.35 * far * aside * across, 0.7 * root_radius, 0.5 * root_radius);
+      arch(fork, foot + 0.8 * far * out + 0.35 * far * aside * across, 0.7 * root_radius,
+           0.5 * root_radius);
     }
   }
 

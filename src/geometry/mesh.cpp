@@ -233,10 +233,8 @@ SurfaceMesh surface_mesh(const Shape& shape, double spacing, int dim, const Aabb
   cut_shape.clip = box;
   cut_shape.flat = dim == 2;
   Contour contour(cut ? static_cast<const Shape&>(cut_shape) : shape, box, spacing, dim);
-  if (dim == 3)
-    contour.triangulate();
-  else
-    contour.outline();
+  if (dim == 3) contour.triangulate();
+  else contour.outline();
   return contour.take();
 }
 

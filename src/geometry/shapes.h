@@ -137,7 +137,8 @@ struct HeightField final : SceneShape {
 
  private:
   double node(int i, int j) const;
-  double patch_distance_squared(const Vec3& p, std::int32_t cell, double best) const;  // endless when more than `best`
+  double patch_distance_squared(const Vec3& p, std::int32_t cell,
+                                double best) const;  // endless when more than `best`
 
   std::vector<double> grid_;  // metres, row by row
   int nx_ = 0, ny_ = 0;

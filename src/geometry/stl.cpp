@@ -70,8 +70,9 @@ Schema<Stl> Stl::schema() {
 
 void Stl::prepare() {
   Triangles mesh = read_stl(file.path);
-  const Mat3 turn = rotate == 0.0 ? Mat3(Mat3::Identity())
-                                  : Eigen::AngleAxisd(rotate, direction_of(axis)).toRotationMatrix();
+  const Mat3 turn = rotate == 0.0
+                        ? Mat3(Mat3::Identity())
+                        : Eigen::AngleAxisd(rotate, direction_of(axis)).toRotationMatrix();
   Aabb around;
   for (Vec3& p : mesh.points) {
     p = turn * (scale * p) + translate;
@@ -79,10 +80,11 @@ void Stl::prepare() {
   }
   // Beyond these lengths products of four of them leave the range of a double.
   constexpr double longest = 1e12, shortest = 1e-12;
-  const double size = (around.hi - around.lo).norm(), reach = around.lo.cwiseAbs().cwiseMax(around.hi.cwiseAbs()).maxCoeff();
+  const double size = (around.hi - around.lo).norm(),
+               reach = around.lo.cwiseAbs().cwiseMax(around.hi.cwiseAbs()).maxCoeff();
   if (!(reach <= longest && size >= shortest))
-    throw IoError(file.path, "the surface is " + exact(size) + " m across and reaches " + exact(reach) +
-                                 " m from the origin: is 'scale' right?");
+    throw IoError(file.path, "the surface is " + exact(size) + " m across and reaches " +
+                                 exact(reach) + " m from the origin: is 'scale' right?");
   const Index dropped = weld(mesh, weld_tolerance.value_or(1e-6 * size));
   if (mesh.faces.empty())
     throw IoError(file.path, "no triangle is left after welding: is weld_tolerance too large?");

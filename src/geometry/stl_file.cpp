@@ -36,7 +36,8 @@ float read_f32(const char* at) {
 
 void add_face(Triangles& mesh, const std::array<Vec3, 3>& corners, const std::string& path) {
   if (mesh.faces.size() >= max_faces)
-    throw IoError(path, "more than " + std::to_string(max_faces) + " triangles: use a coarser surface");
+    throw IoError(path,
+                  "more than " + std::to_string(max_faces) + " triangles: use a coarser surface");
   const auto first = static_cast<std::int32_t>(mesh.points.size());
   for (const Vec3& c : corners) {
     if (!c.allFinite())

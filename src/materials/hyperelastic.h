@@ -10,8 +10,8 @@ namespace sphgeo {
 
 /// Constants of a law.
 struct Hyperelastic {
-  double shear;   ///< mu = G, Pa
-  double lame;    ///< lambda, Pa
+  double shear;             ///< mu = G, Pa
+  double lame;              ///< lambda, Pa
   bool neo_hookean = true;  ///< Eqs. 39, 40; else St. Venant-Kirchhoff, Eq. 38
 };
 
@@ -30,7 +30,8 @@ inline Mat3 second_piola(const Mat3& g, const Hyperelastic& m) {
   if (!m.neo_hookean) return m.lame * strain.trace() * Mat3::Identity() + 2 * m.shear * strain;
   // I - C^-1 = C^-1 (C - I) = C^-1 2 E.
   const Mat3 inverse = (Mat3::Identity() + 2 * strain).inverse();
-  return inverse * (2 * m.shear * strain + m.lame * std::log1p(volume_change(g)) * Mat3::Identity());
+  return inverse *
+         (2 * m.shear * strain + m.lame * std::log1p(volume_change(g)) * Mat3::Identity());
 }
 
 /// Strain energy per volume at rest, J/m3.

@@ -8,73 +8,133 @@
 namespace sphgeo {
 
 Schema<Soil> Soil::schema() {
-  Schema<Soil> s("soil", "elastic, perfectly plastic soil skeleton after Drucker and Prager (Eqs. 12 to 21)");
-  s.required("density", &Soil::density, unit::density, "density of the grains, rho^s; with volume_fraction 1 that of the bulk").above(0);
+  Schema<Soil> s(
+      "soil", "elastic, perfectly plastic soil skeleton after Drucker and Prager (Eqs. 12 to 21)");
+  s.required("density", &Soil::density, unit::density,
+             "density of the grains, rho^s; with volume_fraction 1 that of the bulk")
+      .above(0);
   s.optional("volume_fraction", &Soil::volume_fraction, unit::none,
-             "share of the grains in the volume at t = 0; auto: each body gives its own").above(0).at_most(1).equation("Eq. 1");
-  s.required("youngs_modulus", &Soil::youngs_modulus, unit::pressure, "Young's modulus E of the skeleton").above(0);
-  s.optional("poisson_ratio", &Soil::poisson_ratio, unit::none, "Poisson's ratio nu of the skeleton").above(-1).below(0.5);
-  s.optional("plasticity", &Soil::plasticity, unit::none, "yield criterion, or none for an elastic soil").choices({"drucker_prager", "none"});
-  s.optional("friction_angle", &Soil::friction_angle, unit::angle, "internal friction angle phi").at_least(0).below(1.5).equation("Eq. 14");
-  s.optional("friction", &Soil::friction, unit::none, "internal friction coefficient mu = tan phi, instead of the angle").at_least(0);
-  s.optional("cohesion", &Soil::cohesion, unit::pressure, "cohesion c").at_least(0).equation("Eq. 14");
+             "share of the grains in the volume at t = 0; auto: each body gives its own")
+      .above(0)
+      .at_most(1)
+      .equation("Eq. 1");
+  s.required("youngs_modulus", &Soil::youngs_modulus, unit::pressure,
+             "Young's modulus E of the skeleton")
+      .above(0);
+  s.optional("poisson_ratio", &Soil::poisson_ratio, unit::none,
+             "Poisson's ratio nu of the skeleton")
+      .above(-1)
+      .below(0.5);
+  s.optional("plasticity", &Soil::plasticity, unit::none,
+             "yield criterion, or none for an elastic soil")
+      .choices({"drucker_prager", "none"});
+  s.optional("friction_angle", &Soil::friction_angle, unit::angle, "internal friction angle phi")
+      .at_least(0)
+      .below(1.5)
+      .equation("Eq. 14");
+  s.optional("friction", &Soil::friction, unit::none,
+             "internal friction coefficient mu = tan phi, instead of the angle")
+      .at_least(0);
+  s.optional("cohesion", &Soil::cohesion, unit::pressure, "cohesion c")
+      .at_least(0)
+      .equation("Eq. 14");
   s.optional("saturated_cohesion", &Soil::saturated_cohesion, unit::pressure,
-             "cohesion at full saturation; between, it falls linearly; auto: cohesion does not depend on water").at_least(0).equation("Eq. 108");
-  s.optional("dilation_angle", &Soil::dilation_angle, unit::angle, "dilation angle psi").at_least(0).below(1.5).equation("Eq. 14");
+             "cohesion at full saturation; between, it falls linearly; auto: cohesion does not "
+             "depend on water")
+      .at_least(0)
+      .equation("Eq. 108");
+  s.optional("dilation_angle", &Soil::dilation_angle, unit::angle, "dilation angle psi")
+      .at_least(0)
+      .below(1.5)
+      .equation("Eq. 14");
   s.optional("cone", &Soil::cone, unit::none,
-             "loading in which the cone has the strength of Mohr and Coulomb: plane strain, as Eq. 14 has it, or triaxial compression or extension; "
+             "loading in which the cone has the strength of Mohr and Coulomb: plane strain, as Eq. "
+             "14 has it, or triaxial compression or extension; "
              "in 3D the first is weak where sand is pressed from one side (30 deg act as 21)")
       .choices({"plane_strain", "compression", "extension"})
       .equation("Eq. 14");
   s.optional("drag", &Soil::drag, unit::none,
-             "drag of water in the soil; auto: darcy with a hydraulic_conductivity, ergun with a grain_size, else none")
+             "drag of water in the soil; auto: darcy with a hydraulic_conductivity, ergun with a "
+             "grain_size, else none")
       .choices({"auto", "ergun", "darcy", "none"});
-  s.optional("grain_size", &Soil::grain_size, unit::length, "characteristic grain size D_c of Ergun's drag, mostly D50").above(0).equation("Eq. 31");
-  s.optional("hydraulic_conductivity", &Soil::hydraulic_conductivity, unit::speed, "hydraulic conductivity K^s of Darcy's drag").above(0).equation("Eq. 29");
-  s.optional("drag_viscous", &Soil::drag_viscous, unit::none, "coefficient alpha_d of Ergun's viscous term").at_least(0).equation("Eq. 31");
-  s.optional("drag_inertial", &Soil::drag_inertial, unit::none, "coefficient beta_d of Ergun's inertial term").at_least(0).equation("Eq. 31");
+  s.optional("grain_size", &Soil::grain_size, unit::length,
+             "characteristic grain size D_c of Ergun's drag, mostly D50")
+      .above(0)
+      .equation("Eq. 31");
+  s.optional("hydraulic_conductivity", &Soil::hydraulic_conductivity, unit::speed,
+             "hydraulic conductivity K^s of Darcy's drag")
+      .above(0)
+      .equation("Eq. 29");
+  s.optional("drag_viscous", &Soil::drag_viscous, unit::none,
+             "coefficient alpha_d of Ergun's viscous term")
+      .at_least(0)
+      .equation("Eq. 31");
+  s.optional("drag_inertial", &Soil::drag_inertial, unit::none,
+             "coefficient beta_d of Ergun's inertial term")
+      .at_least(0)
+      .equation("Eq. 31");
   s.optional("skeleton", &Soil::skeleton, unit::none,
-             "deformable; fixed: it never moves; prescribed: it keeps the velocity field of its bodies, whatever the stress")
+             "deformable; fixed: it never moves; prescribed: it keeps the velocity field of its "
+             "bodies, whatever the stress")
       .choices({"deformable", "fixed", "prescribed"});
   s.check([](Soil& m, CheckContext& c) {
-    if (m.drag == "ergun" && !m.grain_size) c.error("drag", "Ergun's drag needs a grain size", "give grain_size, as in 'grain_size: 2 mm'");
+    if (m.drag == "ergun" && !m.grain_size)
+      c.error("drag", "Ergun's drag needs a grain size",
+              "give grain_size, as in 'grain_size: 2 mm'");
     if (m.drag == "darcy" && !m.hydraulic_conductivity)
-      c.error("drag", "Darcy's drag needs a hydraulic conductivity", "give hydraulic_conductivity, as in 'hydraulic_conductivity: 1e-3 m/s'");
+      c.error("drag", "Darcy's drag needs a hydraulic conductivity",
+              "give hydraulic_conductivity, as in 'hydraulic_conductivity: 1e-3 m/s'");
     if (m.drag == "auto" && m.grain_size && m.hydraulic_conductivity)
-      c.error("hydraulic_conductivity", "grain_size and hydraulic_conductivity belong to two drag laws", "give one of them, or say which: 'drag: ergun' or 'drag: darcy'");
+      c.error("hydraulic_conductivity",
+              "grain_size and hydraulic_conductivity belong to two drag laws",
+              "give one of them, or say which: 'drag: ergun' or 'drag: darcy'");
     if (m.elastic()) {
       // By value: a resolved deck, which a run may be made of again, names every key.
-      const std::pair<const char*, bool> plastic[] = {{"friction_angle", m.friction_angle.has_value()}, {"friction", m.friction.has_value()},
-                                                      {"cohesion", m.cohesion != 0}, {"saturated_cohesion", m.saturated_cohesion.has_value()},
-                                                      {"dilation_angle", m.dilation_angle != 0}};
+      const std::pair<const char*, bool> plastic[] = {
+          {"friction_angle", m.friction_angle.has_value()},
+          {"friction", m.friction.has_value()},
+          {"cohesion", m.cohesion != 0},
+          {"saturated_cohesion", m.saturated_cohesion.has_value()},
+          {"dilation_angle", m.dilation_angle != 0}};
       for (const auto& [key, set] : plastic)
-        if (set) c.error(key, std::string("'") + key + "' has no meaning without plasticity", "leave it out, or leave 'plasticity: none' out");
+        if (set)
+          c.error(key, std::string("'") + key + "' has no meaning without plasticity",
+                  "leave it out, or leave 'plasticity: none' out");
       return;
     }
     if (m.friction_angle && m.friction)
-      c.error("friction", "the friction is given twice", "give friction_angle or friction, not both");
+      c.error("friction", "the friction is given twice",
+              "give friction_angle or friction, not both");
     if (!m.friction_angle && !m.friction)
-      c.error("", "the soil has no friction", "give friction_angle (0 deg is allowed) or friction, or plasticity: none");
+      c.error("", "the soil has no friction",
+              "give friction_angle (0 deg is allowed) or friction, or plasticity: none");
     // More dilation than friction makes the flow a source of energy.
     if (std::tan(m.dilation_angle) > m.tan_friction() * (1 + 1e-12))
-      c.error("dilation_angle", "the dilation angle exceeds the friction angle", "the plastic work would be negative");
+      c.error("dilation_angle", "the dilation angle exceeds the friction angle",
+              "the plastic work would be negative");
     if (m.saturated_cohesion && *m.saturated_cohesion > m.cohesion)
-      c.error("saturated_cohesion", "the saturated cohesion exceeds the cohesion", "water takes cohesion away");
+      c.error("saturated_cohesion", "the saturated cohesion exceeds the cohesion",
+              "water takes cohesion away");
   });
   return s;
 }
 
-double Soil::tan_friction() const { return friction ? *friction : std::tan(friction_angle.value_or(0)); }
+double Soil::tan_friction() const {
+  return friction ? *friction : std::tan(friction_angle.value_or(0));
+}
 
 DruckerPrager<double> Soil::constants(double saturation) const {
   DruckerPrager<double> m{bulk_modulus(), shear_modulus(), 0, 0, 0, 0};
   if (elastic()) return with_strength(m, drucker_prager::unbounded);
   const double dry = cohesion, wet = saturated_cohesion.value_or(cohesion);
   using drucker_prager::Cone;
-  const Cone edge = cone == "compression" ? Cone::compression : cone == "extension" ? Cone::extension : Cone::plane_strain;
+  const Cone edge = cone == "compression" ? Cone::compression
+                    : cone == "extension" ? Cone::extension
+                                          : Cone::plane_strain;
   m.friction = drucker_prager::slope(tan_friction(), edge);
   m.dilation = drucker_prager::slope(std::tan(dilation_angle), edge);
-  return with_strength(m, drucker_prager::strength(wet + (1 - saturation) * (dry - wet), tan_friction(), edge));
+  return with_strength(
+      m, drucker_prager::strength(wet + (1 - saturation) * (dry - wet), tan_friction(), edge));
 }
 
 double Soil::pressure_at_rest() const {

@@ -11,23 +11,24 @@ namespace sphgeo {
 
 /// Parameters of one soil. The grains do not change their density; the skeleton does.
 struct Soil final : MaterialSpec {
-  double density = 0;                       ///< of the grains, rho^s, kg/m3
-  std::optional<double> volume_fraction;    ///< n^s at t = 0, unless a body gives its own
-  double youngs_modulus = 0;                ///< E of the skeleton, Pa
-  double poisson_ratio = 0.3;               ///< nu
+  double density = 0;                         ///< of the grains, rho^s, kg/m3
+  std::optional<double> volume_fraction;      ///< n^s at t = 0, unless a body gives its own
+  double youngs_modulus = 0;                  ///< E of the skeleton, Pa
+  double poisson_ratio = 0.3;                 ///< nu
   std::string plasticity = "drucker_prager";  ///< drucker_prager | none
-  std::optional<double> friction_angle;     ///< phi, rad
-  std::optional<double> friction;           ///< mu = tan phi, instead of the angle
-  double cohesion = 0;                      ///< c, Pa
-  std::optional<double> saturated_cohesion; ///< c of Eq. 108 at full saturation, Pa
-  double dilation_angle = 0;                ///< psi, rad
-  std::string cone = "plane_strain";        ///< plane_strain | compression | extension: where it meets Mohr and Coulomb
-  std::string drag = "auto";                ///< auto | ergun | darcy | none, of water in the soil
-  std::optional<double> grain_size;         ///< D_c of Eq. 31, m
+  std::optional<double> friction_angle;       ///< phi, rad
+  std::optional<double> friction;             ///< mu = tan phi, instead of the angle
+  double cohesion = 0;                        ///< c, Pa
+  std::optional<double> saturated_cohesion;   ///< c of Eq. 108 at full saturation, Pa
+  double dilation_angle = 0;                  ///< psi, rad
+  std::string cone =
+      "plane_strain";  ///< plane_strain | compression | extension: where it meets Mohr and Coulomb
+  std::string drag = "auto";         ///< auto | ergun | darcy | none, of water in the soil
+  std::optional<double> grain_size;  ///< D_c of Eq. 31, m
   std::optional<double> hydraulic_conductivity;  ///< K^s of Eq. 29, m/s
-  double drag_viscous = 150;                ///< alpha_d of Eq. 31
-  double drag_inertial = 1.75;              ///< beta_d of Eq. 31
-  std::string skeleton = "deformable";      ///< deformable | fixed | prescribed
+  double drag_viscous = 150;                     ///< alpha_d of Eq. 31
+  double drag_inertial = 1.75;                   ///< beta_d of Eq. 31
+  std::string skeleton = "deformable";           ///< deformable | fixed | prescribed
 
   std::string phase() const override { return "soil"; }
   double bulk_modulus() const { return youngs_modulus / (3 * (1 - 2 * poisson_ratio)); }
@@ -44,7 +45,8 @@ struct Soil final : MaterialSpec {
   double tan_friction() const;
   /// Constants of the stress point with the cohesion at the degree of saturation S_r (Eq. 108).
   DruckerPrager<double> constants(double saturation = 0) const;
-  /// Horizontal over vertical stress at rest: 1 - sin phi (Jaky), or nu / (1 - nu) of an elastic soil.
+  /// Horizontal over vertical stress at rest: 1 - sin phi (Jaky), or nu / (1 - nu) of an elastic
+  /// soil.
   double pressure_at_rest() const;
   static Schema<Soil> schema();
 };

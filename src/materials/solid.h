@@ -11,10 +11,11 @@ namespace sphgeo {
 
 /// What elastic and rigid solids share.
 struct SolidMaterial : MaterialSpec {
-  double density = 0;           ///< rho_0, kg/m3
-  std::string slip = "no_slip"; ///< no_slip | free_slip: water and soil on its surface
-  double friction = 0;          ///< Coulomb coefficient of contacts; of two solids the smaller counts
-  double contact_damping = 0;   ///< of approach in a contact, in parts of rho_0 c_0; of two solids the mean
+  double density = 0;            ///< rho_0, kg/m3
+  std::string slip = "no_slip";  ///< no_slip | free_slip: water and soil on its surface
+  double friction = 0;  ///< Coulomb coefficient of contacts; of two solids the smaller counts
+  double contact_damping =
+      0;  ///< of approach in a contact, in parts of rho_0 c_0; of two solids the mean
 
   std::string phase() const final { return "solid"; }
   virtual bool rigid() const = 0;
@@ -24,11 +25,12 @@ struct SolidMaterial : MaterialSpec {
 
 /// A hyperelastic solid (Eqs. 35 to 40).
 struct Elastic final : SolidMaterial {
-  double youngs_modulus = 0;   ///< E, Pa
-  double poisson_ratio = 0.3;  ///< nu
+  double youngs_modulus = 0;        ///< E, Pa
+  double poisson_ratio = 0.3;       ///< nu
   std::string law = "neo_hookean";  ///< neo_hookean | saint_venant_kirchhoff
-  double damping = 0;          ///< by mass, 1/s: dv/dt = ... - damping v
-  double viscosity_factor = 0; ///< alpha of an artificial viscosity alpha rho_0 c h between particles
+  double damping = 0;               ///< by mass, 1/s: dv/dt = ... - damping v
+  double viscosity_factor =
+      0;  ///< alpha of an artificial viscosity alpha rho_0 c h between particles
 
   bool rigid() const override { return false; }
   double shear_modulus() const { return youngs_modulus / (2 * (1 + poisson_ratio)); }
@@ -36,7 +38,9 @@ struct Elastic final : SolidMaterial {
   double lame() const { return bulk_modulus() - 2 * shear_modulus() / 3; }
   double contact_stiffness() const override { return bulk_modulus(); }
   /// Speed of compression waves, the fastest, m/s; c_0 of Eq. 53 is sqrt(K / rho_0).
-  double wave_speed() const { return std::sqrt((bulk_modulus() + 4 * shear_modulus() / 3) / density); }
+  double wave_speed() const {
+    return std::sqrt((bulk_modulus() + 4 * shear_modulus() / 3) / density);
+  }
   static Schema<Elastic> schema();
 };
 
@@ -52,11 +56,21 @@ struct Rigid final : SolidMaterial {
 /// Declares the keys that all solids share.
 template <class S>
 void declare_solid_keys(Schema<S>& s) {
-  s.required("density", &S::density, unit::density, "density rho_0 at rest").above(0).equation("Eq. 34");
-  s.optional("slip", &S::slip, unit::none, "whether water and soil stick to its surface or slide along it").choices({"no_slip", "free_slip"});
-  s.optional("friction", &S::friction, unit::none, "Coulomb friction of its contacts with walls and other solids; of two solids the smaller counts").at_least(0);
-  s.optional("contact_damping", &S::contact_damping, unit::none,
-             "resistance to approach in a contact, in parts of rho_0 c_0; of two solids the mean counts").at_least(0).at_most(2);
+  s.required("density", &S::density, unit::density, "density rho_0 at rest")
+      .above(0)
+      .equation("Eq. 34");
+  s.optional("slip", &S::slip, unit::none,
+             "whether water and soil stick to its surface or slide along it")
+      .choices({"no_slip", "free_slip"});
+  s.optional("friction", &S::friction, unit::none,
+             "Coulomb friction of its contacts with walls and other solids; of two solids the "
+             "smaller counts")
+      .at_least(0);
+  s.optional(
+       "contact_damping", &S::contact_damping, unit::none,
+       "resistance to approach in a contact, in parts of rho_0 c_0; of two solids the mean counts")
+      .at_least(0)
+      .at_most(2);
 }
 
 /// The material of a body, if that is a solid.
@@ -65,7 +79,8 @@ inline const SolidMaterial* solid_of(const Model& model, const Body& body) {
 }
 bool has_solids(const Model& model);
 
-/// The spacings of solids, each once, in order of the bodies, m: every one has a particle set of its own.
+/// The spacings of solids, each once, in order of the bodies, m: every one has a particle set of
+/// its own.
 std::vector<double> solid_spacings(const Model& model);
 
 /// The set of the solids of that spacing: "solids", "solids_2" ...

@@ -15,14 +15,16 @@ inline StateFileKind checkpoint_kind() { return {"checkpoint 2", "checkpoint"}; 
 /// Collects the state of a run.
 class CheckpointWriter final : public StateFileWriter {
  public:
-  explicit CheckpointWriter(std::size_t expected_bytes = 0) : StateFileWriter(checkpoint_kind(), expected_bytes) {}
+  explicit CheckpointWriter(std::size_t expected_bytes = 0)
+      : StateFileWriter(checkpoint_kind(), expected_bytes) {}
 };
 
 /// Gives it back. Throws as StateFileReader.
 class CheckpointReader final : public StateFileReader {
  public:
   explicit CheckpointReader(const std::string& path) : StateFileReader(checkpoint_kind(), path) {}
-  CheckpointReader(std::string bytes, const std::string& path) : StateFileReader(checkpoint_kind(), std::move(bytes), path) {}
+  CheckpointReader(std::string bytes, const std::string& path)
+      : StateFileReader(checkpoint_kind(), std::move(bytes), path) {}
 };
 
 /// The newest sound checkpoint of a run.

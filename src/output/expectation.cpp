@@ -35,8 +35,7 @@ Source find_source(const std::string& probe, const SeriesLookup& series) {
 void measure_number(const Expect& e, const Samples& samples, ExpectResult& result) {
   if (const std::optional<double> reduced = reduce(samples, e.reduce, e.at))
     result.value = (*reduced + e.shift) / e.scale;
-  else
-    result.note = fmt::format("the {} samples hold no '{}'", samples.t.size(), e.reduce);
+  else result.note = fmt::format("the {} samples hold no '{}'", samples.t.size(), e.reduce);
 }
 
 void measure_curve(const Expect& e, Samples samples, ExpectResult& result) {
@@ -112,10 +111,8 @@ ExpectResult evaluate(const Expect& e, const SeriesLookup& series) {
       source.column.empty() ? source.series->column(0) : source.series->column(source.column);
   const Samples samples = cut(source.series->times(), values, e.from, e.to);
   try {
-    if (e.reduce == "curve")
-      measure_curve(e, samples, result);
-    else
-      measure_number(e, samples, result);
+    if (e.reduce == "curve") measure_curve(e, samples, result);
+    else measure_number(e, samples, result);
   } catch (const Error& error) {  // the results of the run must not be lost with its reference
     result.note = error.what();
   }

@@ -51,9 +51,10 @@ std::string time_text(const RunFigures& f) {
 }
 
 std::string row(double resolution, const RunFigures& f, int threads, const char* remark) {
-  return fmt::format("  {:>12.4g} {:>12} {:>10} {:>10} {:>12} {:>14} {:>8}{}\n", resolution, f.total_particles(),
-                     bytes_text(static_cast<double>(f.memory_bytes)), bytes_text(static_cast<double>(f.disk_bytes)),
-                     f.acoustic_steps, time_text(f), threads, remark);
+  return fmt::format("  {:>12.4g} {:>12} {:>10} {:>10} {:>12} {:>14} {:>8}{}\n", resolution,
+                     f.total_particles(), bytes_text(static_cast<double>(f.memory_bytes)),
+                     bytes_text(static_cast<double>(f.disk_bytes)), f.acoustic_steps, time_text(f),
+                     threads, remark);
 }
 
 }  // namespace
@@ -61,10 +62,11 @@ std::string row(double resolution, const RunFigures& f, int threads, const char*
 std::string render_forecast(const Forecast& f, double resolution) {
   std::string out = fmt::format(
       "forecast: {} advection and {} acoustic steps, {} on {} thread{}, {} of memory, {} on disk\n",
-      f.advection_steps, f.acoustic_steps, f.wall_s ? "about " + time_text(f) : "time unknown", f.threads,
-      f.threads == 1 ? "" : "s", bytes_text(static_cast<double>(f.memory_bytes)), bytes_text(static_cast<double>(f.disk_bytes)));
-  out += fmt::format("  {:>12} {:>12} {:>10} {:>10} {:>12} {:>14} {:>8}\n", "spacing [m]", "particles", "memory", "disk",
-                     "acoustic", "wall time", "threads");
+      f.advection_steps, f.acoustic_steps, f.wall_s ? "about " + time_text(f) : "time unknown",
+      f.threads, f.threads == 1 ? "" : "s", bytes_text(static_cast<double>(f.memory_bytes)),
+      bytes_text(static_cast<double>(f.disk_bytes)));
+  out += fmt::format("  {:>12} {:>12} {:>10} {:>10} {:>12} {:>14} {:>8}\n", "spacing [m]",
+                     "particles", "memory", "disk", "acoustic", "wall time", "threads");
   bool own = false;
   const auto own_row = [&] {
     out += row(resolution, f, f.threads, "  <- this deck");
@@ -82,7 +84,8 @@ std::uint64_t folder_bytes(const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code problem;
   std::uint64_t sum = 0;
-  for (fs::recursive_directory_iterator it(folder, problem), end; !problem && it != end; it.increment(problem)) {
+  for (fs::recursive_directory_iterator it(folder, problem), end; !problem && it != end;
+       it.increment(problem)) {
     std::error_code ignored;
     if (!it->is_regular_file(ignored)) continue;
     const auto size = it->file_size(ignored);

@@ -57,12 +57,9 @@ Trend fitted_trend(const Samples& s, double period) {
     const double phase = 2 * std::numbers::pi * (s.t[i] - begin) / period;
     const double c = std::cos(phase), d = std::sin(phase);
     Eigen::VectorXd basis(terms);
-    if (terms == 6)
-      basis << 1, c, d, u, u * c, u * d;
-    else if (terms == 4)
-      basis << 1, c, d, u;
-    else
-      basis << 1, c, d;
+    if (terms == 6) basis << 1, c, d, u, u * c, u * d;
+    else if (terms == 4) basis << 1, c, d, u;
+    else basis << 1, c, d;
     normal += weight(s, i) * basis * basis.transpose();
     right += weight(s, i) * s.y[i] * basis;
   }

@@ -13,8 +13,8 @@ namespace sphgeo {
 namespace {
 
 constexpr std::array<std::string_view, 15> names = {
-    "last",  "first",  "min",         "max",         "max_abs", "mean",      "rms",
-    "range", "growth", "time_of_max", "time_of_min", "period",  "frequency", "slope", "at"};
+    "last",   "first",       "min",         "max",    "max_abs",   "mean",  "rms", "range",
+    "growth", "time_of_max", "time_of_min", "period", "frequency", "slope", "at"};
 
 /// The integral over time of a quadratic form of the piecewise linear curve, by the span of time.
 /// `piece(a, b)` is the mean of the form over one piece with the end values a and b.

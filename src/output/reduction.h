@@ -41,11 +41,11 @@ std::optional<double> oscillation_period(const Samples& samples);
 
 /// How far a curve is from a table.
 struct CurveDifference {
-  double l2 = 0;    ///< root mean square of the difference by the range of the reference
-  double max = 0;   ///< largest difference by the range of the reference
+  double l2 = 0;           ///< root mean square of the difference by the range of the reference
+  double max = 0;          ///< largest difference by the range of the reference
   double relative_l2 = 0;  ///< root mean square of the difference by that of the reference
-  int used = 0;     ///< points of the reference inside of the samples
-  int skipped = 0;  ///< points of the reference that the samples do not reach
+  int used = 0;            ///< points of the reference inside of the samples
+  int skipped = 0;         ///< points of the reference that the samples do not reach
 };
 
 /// Compares at the abscissae x of the reference (NaN points are ignored). Empty when no point can

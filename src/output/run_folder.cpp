@@ -23,8 +23,9 @@ namespace fs = std::filesystem;
 namespace {
 
 // resolved.yaml goes last: while results are being deleted the folder still names their deck.
-constexpr std::array own_files = {"summary.json", "run.csv", "checkpoint.h5", "checkpoint.prev.h5",
-                                  "report.html",  "relaxed.h5", "stop",    "resolved.yaml"};
+constexpr std::array own_files = {
+    "summary.json", "run.csv",    "checkpoint.h5", "checkpoint.prev.h5",
+    "report.html",  "relaxed.h5", "stop",          "resolved.yaml"};
 constexpr std::array own_folders = {"probes", "frames"};
 
 /// Whether sphgeo wrote this file of probes/ or frames/: the ending is one of ours and the text
@@ -68,11 +69,12 @@ RunFolder::RunFolder(std::string path, ExistingResults existing) : path_(std::mo
     if (!old.empty() && existing == ExistingResults::refuse)
       throw Error(
           ExitCode::usage,
-          fmt::format("{}: the folder holds results ({}{}); {}replace them with --overwrite, or name "
-                      "another folder with -o",
-                      path_, old.back().filename().string(),
-                      old.size() > 1 ? fmt::format(" and {} more files", old.size() - 1) : "",
-                      fs::exists(checkpoint()) ? "go on with --resume, " : ""));
+          fmt::format(
+              "{}: the folder holds results ({}{}); {}replace them with --overwrite, or name "
+              "another folder with -o",
+              path_, old.back().filename().string(),
+              old.size() > 1 ? fmt::format(" and {} more files", old.size() - 1) : "",
+              fs::exists(checkpoint()) ? "go on with --resume, " : ""));
     for (const fs::path& file : old) {
       std::error_code error;
       fs::remove(file, error);
@@ -112,8 +114,10 @@ FolderLock::FolderLock(const std::string& folder) : folder_(folder) {
   // File systems without locks answer with another error; they go unlocked.
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
   ::close(descriptor_);
-  throw Error(ExitCode::usage, folder_ + ": another run is writing to this folder; wait for it or stop it, or name "
-                                         "another folder with -o");
+  throw Error(ExitCode::usage,
+              folder_ +
+                  ": another run is writing to this folder; wait for it or stop it, or name "
+                  "another folder with -o");
 }
 
 FolderLock::~FolderLock() {
@@ -128,10 +132,8 @@ std::string file_name_of(const std::string& name) {
   for (const char c : name) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                        c == '_' || c == '-' || (c == '.' && !out.empty());
-    if (plain)
-      out += c;
-    else
-      out += fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    if (plain) out += c;
+    else out += fmt::format("%{:02X}", static_cast<unsigned char>(c));
   }
   return out.empty() ? "unnamed" : out;
 }

@@ -39,10 +39,12 @@ class RunFolder {
   std::string path_;
 };
 
-/// Keeps every other run out of a folder while it lives; the system lets go of it however a process ends.
+/// Keeps every other run out of a folder while it lives; the system lets go of it however a process
+/// ends.
 class FolderLock {
  public:
-  /// Creates the folder when it is missing. Throws Error (usage) when another run holds it, IoError.
+  /// Creates the folder when it is missing. Throws Error (usage) when another run holds it,
+  /// IoError.
   explicit FolderLock(const std::string& folder);
   /// A folder that was made for nothing goes away again.
   ~FolderLock();

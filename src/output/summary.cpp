@@ -33,10 +33,8 @@ Json guard_json(const GuardReport& guard) {
     out["effect"] = guard.effect;
     out["set"] = guard.set;
     out["particle"] = guard.particle ? Json(*guard.particle) : Json(nullptr);
-    if (guard.place)
-      out["place"] = numbers({guard.place->x(), guard.place->y(), guard.place->z()});
-    else
-      out["place"] = nullptr;
+    if (guard.place) out["place"] = numbers({guard.place->x(), guard.place->y(), guard.place->z()});
+    else out["place"] = nullptr;
     out["time_s"] = number(guard.time);
   }
   for (const auto& [name, value] : guard.extremes) out[name] = number(value);
@@ -70,11 +68,16 @@ Json to_json(const Summary& s) {
                               {"calls", r.calls},
                               {"seconds", number(r.seconds)},
                               {"share", number(r.share)}});
-    if (!r.walked_set.empty()) out["effects"].back()["walks"] = {{"set", r.walked_set}, {"share", number(r.walked_share)}};
+    if (!r.walked_set.empty())
+      out["effects"].back()["walks"] = {{"set", r.walked_set}, {"share", number(r.walked_share)}};
   }
   out["plan"] = Json::array();
   for (const PlanRow& r : s.plan)
-    out["plan"].push_back({{"stage", r.stage}, {"name", r.name}, {"equations", r.equations}, {"acts_on", r.acts_on}, {"because", r.because}});
+    out["plan"].push_back({{"stage", r.stage},
+                           {"name", r.name},
+                           {"equations", r.equations},
+                           {"acts_on", r.acts_on},
+                           {"because", r.because}});
   out["expect"] = Json::array();
   for (const ExpectResult& e : s.expect) {
     Json row = {{"name", e.name},
@@ -95,11 +98,14 @@ Json to_json(const Summary& s) {
   }
   if (s.forecast) {
     out["forecast"] = to_json(*s.forecast);
-    out["forecast"]["actual"] = to_json(RunFigures{s.particles, s.memory_peak_bytes, s.disk_bytes, s.advection_steps, s.acoustic_steps, s.wall_s, 0});
+    out["forecast"]["actual"] =
+        to_json(RunFigures{s.particles, s.memory_peak_bytes, s.disk_bytes, s.advection_steps,
+                           s.acoustic_steps, s.wall_s, 0});
   }
   out["guard"] = guard_json(s.guard);
-  out["checkpoints"] = {
-      {"count", s.checkpoint.count}, {"seconds", number(s.checkpoint.seconds)}, {"bytes", s.checkpoint.bytes}};
+  out["checkpoints"] = {{"count", s.checkpoint.count},
+                        {"seconds", number(s.checkpoint.seconds)},
+                        {"bytes", s.checkpoint.bytes}};
   return out;
 }
 

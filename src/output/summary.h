@@ -62,10 +62,10 @@ struct Summary {
   double wall_s = 0;
   double particle_updates_per_s_per_core = 0;  ///< one update = one acoustic step of one particle
   std::uint64_t memory_peak_bytes = 0;
-  std::uint64_t disk_bytes = 0;                ///< of the run folder
-  std::optional<Forecast> forecast;            ///< made at the start
-  std::vector<TimeRow> effects;  ///< from with_rest()
-  std::vector<PlanRow> plan;     ///< in the order in which they ran
+  std::uint64_t disk_bytes = 0;      ///< of the run folder
+  std::optional<Forecast> forecast;  ///< made at the start
+  std::vector<TimeRow> effects;      ///< from with_rest()
+  std::vector<PlanRow> plan;         ///< in the order in which they ran
   std::vector<ExpectResult> expect;
   std::vector<LedgerRow> ledger;
   GuardReport guard;

@@ -30,7 +30,8 @@ std::string render_time_table(const std::vector<TimeRow>& rows) {
     out += fmt::format("  {:<{}}  {:>10}  {:>10.3f}  {:>5.1f} %", r.name, width, calls, r.seconds,
                        100 * r.share);
     // What an effect leaves out is part of what it costs.
-    if (!r.walked_set.empty()) out += fmt::format("  {:.3g} % of {}", 100 * r.walked_share, r.walked_set);
+    if (!r.walked_set.empty())
+      out += fmt::format("  {:.3g} % of {}", 100 * r.walked_share, r.walked_set);
     out += '\n';
     total.seconds += r.seconds;
     total.share += r.share;

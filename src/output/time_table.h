@@ -14,8 +14,9 @@ struct TimeRow {
   std::int64_t calls = 0;
   double seconds = 0;
   double share = 0;
-  std::string walked_set = {};  ///< of which it walks only what is near another set; empty: no such effect
-  double walked_share = 0;      ///< of that set, in 0..1, mean over all calls
+  std::string walked_set =
+      {};  ///< of which it walks only what is near another set; empty: no such effect
+  double walked_share = 0;  ///< of that set, in 0..1, mean over all calls
 };
 
 /// Sets the shares, sorts by time (ties by name), drops rows that never ran and appends "rest": the

@@ -19,18 +19,12 @@ constexpr int vtk_triangle = 5;
 
 template <class T>
 const char* vtk_type() {
-  if constexpr (std::is_same_v<T, double>)
-    return "Float64";
-  else if constexpr (std::is_same_v<T, float>)
-    return "Float32";
-  else if constexpr (std::is_same_v<T, std::int32_t>)
-    return "Int32";
-  else if constexpr (std::is_same_v<T, std::int64_t>)
-    return "Int64";
-  else if constexpr (std::is_same_v<T, std::uint64_t>)
-    return "UInt64";
-  else
-    return "UInt8";
+  if constexpr (std::is_same_v<T, double>) return "Float64";
+  else if constexpr (std::is_same_v<T, float>) return "Float32";
+  else if constexpr (std::is_same_v<T, std::int32_t>) return "Int32";
+  else if constexpr (std::is_same_v<T, std::int64_t>) return "Int64";
+  else if constexpr (std::is_same_v<T, std::uint64_t>) return "UInt64";
+  else return "UInt8";
 }
 
 template <class T>
@@ -102,8 +96,7 @@ class VtuFile {
   void add(VtuArray array, const std::string& unit = {}) {
     xml_ += fmt::format(R"(        <DataArray {} format="appended" offset="{}")", array.head(),
                         offset_);
-    if (unit.empty() || unit == "1")
-      xml_ += "/>\n";
+    if (unit.empty() || unit == "1") xml_ += "/>\n";
     else
       xml_ += fmt::format(
           "><InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">{}</InformationKey>"

@@ -54,7 +54,8 @@ void VtuArray::deflate_blocks() {
     uLongf out_size = compressBound(size);
     std::string& out = deflated_[static_cast<std::size_t>(b)];
     out.resize(out_size);
-    if (compress2(reinterpret_cast<Bytef*>(out.data()), &out_size, raw.data(), size, Z_BEST_SPEED) != Z_OK)
+    if (compress2(reinterpret_cast<Bytef*>(out.data()), &out_size, raw.data(), size,
+                  Z_BEST_SPEED) != Z_OK)
       throw std::bad_alloc();  // the only way in which it fails here
     out.resize(out_size);
     out.shrink_to_fit();
@@ -77,10 +78,8 @@ void VtuArray::write_block_sizes(AtomicFile& file) const {
 }
 
 void VtuArray::write(AtomicFile& file) const {
-  if (blocked_)
-    write_block_sizes(file);
-  else
-    write_u64(file, static_cast<std::uint64_t>(count_) * value_bytes_);
+  if (blocked_) write_block_sizes(file);
+  else write_u64(file, static_cast<std::uint64_t>(count_) * value_bytes_);
   for (const std::string& block : deflated_) file.write(block);
   if (!deflated_.empty()) return;
   std::vector<unsigned char> raw(static_cast<std::size_t>(block_bytes));
@@ -88,10 +87,8 @@ void VtuArray::write(AtomicFile& file) const {
     const Index n = values_in(b);
     const std::size_t bytes = static_cast<std::size_t>(n) * value_bytes_;
     fill_(b * values_per_block(), n, raw.data());
-    if (blocked_)
-      write_stored_block(file, raw.data(), bytes);
-    else
-      file.write(raw.data(), bytes);
+    if (blocked_) write_stored_block(file, raw.data(), bytes);
+    else file.write(raw.data(), bytes);
   }
 }
 

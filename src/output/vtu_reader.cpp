@@ -81,7 +81,8 @@ class Head {
 
   static std::string unescaped(std::string_view escaped) {
     std::string value(escaped);
-    for (const auto& [escape, character] : {std::pair{"&lt;", "<"}, std::pair{"&gt;", ">"}, std::pair{"&quot;", "\""}, std::pair{"&amp;", "&"}})
+    for (const auto& [escape, character] : {std::pair{"&lt;", "<"}, std::pair{"&gt;", ">"},
+                                            std::pair{"&quot;", "\""}, std::pair{"&amp;", "&"}})
       for (auto at = value.find(escape); at != std::string::npos; at = value.find(escape, at + 1))
         value.replace(at, std::strlen(escape), character);
     return value;
@@ -109,10 +110,12 @@ constexpr std::string_view sections[] = {"PointData", "CellData", "Points", "Cel
 
 void read_file_tag(const Head& head, const Tag& tag, Layout& layout) {
   if (head.needed(tag, "type") != "UnstructuredGrid") head.fail("is no unstructured grid");
-  if (head.needed(tag, "byte_order") != "LittleEndian" || head.needed(tag, "header_type") != "UInt64")
+  if (head.needed(tag, "byte_order") != "LittleEndian" ||
+      head.needed(tag, "header_type") != "UInt64")
     head.fail("was not written by sphgeo: another byte order, or another type of the sizes");
   const std::optional<std::string> compressor = head.attribute(tag, "compressor");
-  if (compressor && *compressor != "vtkZLibDataCompressor") head.fail("was not written by sphgeo: another compressor");
+  if (compressor && *compressor != "vtkZLibDataCompressor")
+    head.fail("was not written by sphgeo: another compressor");
   layout.compressed = compressor.has_value();
 }
 
@@ -133,16 +136,26 @@ Layout layout_of(const Head& head) {
     } else if (tag->is("DataArray") && section.empty()) {
       if (head.attribute(*tag, "Name") != "TimeValue") continue;
       double time = 0;
-      const auto [end, error] = std::from_chars(tag->after.data(), tag->after.data() + tag->after.size(), time);
-      if (error != std::errc{} || end != tag->after.data() + tag->after.size()) head.fail("is damaged: its time is no number");
+      const auto [end, error] =
+          std::from_chars(tag->after.data(), tag->after.data() + tag->after.size(), time);
+      if (error != std::errc{} || end != tag->after.data() + tag->after.size())
+        head.fail("is damaged: its time is no number");
       layout.time = time;
     } else if (tag->is("DataArray")) {
-      if (head.needed(*tag, "format") != "appended") head.fail("was not written by sphgeo: an array that is not appended");
-      ArrayPlace array{section, head.needed(*tag, "type"), head.needed(*tag, "Name"), {}, head.count(*tag, "NumberOfComponents"), head.count(*tag, "offset")};
+      if (head.needed(*tag, "format") != "appended")
+        head.fail("was not written by sphgeo: an array that is not appended");
+      ArrayPlace array{section,
+                       head.needed(*tag, "type"),
+                       head.needed(*tag, "Name"),
+                       {},
+                       head.count(*tag, "NumberOfComponents"),
+                       head.count(*tag, "offset")};
       if (array.components < 1 || array.components > 9)
-        head.fail(fmt::format("is damaged: array '{}' has {} components", printable(array.name), array.components));
+        head.fail(fmt::format("is damaged: array '{}' has {} components", printable(array.name),
+                              array.components));
       layout.arrays.push_back(std::move(array));
-    } else if (tag->is("InformationKey") && !layout.arrays.empty() && head.attribute(*tag, "name") == "UNITS_LABEL") {
+    } else if (tag->is("InformationKey") && !layout.arrays.empty() &&
+               head.attribute(*tag, "name") == "UNITS_LABEL") {
       layout.arrays.back().unit = Head::unescaped(tag->after);
     } else {
       for (const std::string_view name : sections) {
@@ -158,7 +171,8 @@ Layout layout_of(const Head& head) {
 /// The appended arrays; every size is checked against what the file holds before it is used.
 class Arrays {
  public:
-  Arrays(const Head& head, bool compressed, std::uint64_t most_bytes) : head_(head), compressed_(compressed), left_(most_bytes) {}
+  Arrays(const Head& head, bool compressed, std::uint64_t most_bytes)
+      : head_(head), compressed_(compressed), left_(most_bytes) {}
 
   std::vector<double> operator()(const ArrayPlace& place, std::uint64_t tuples) {
     if (place.type == "Float64") return values<double>(place, tuples);
@@ -167,7 +181,8 @@ class Arrays {
     if (place.type == "Int64") return values<std::int64_t>(place, tuples);
     if (place.type == "UInt64") return values<std::uint64_t>(place, tuples);
     if (place.type == "UInt8") return values<std::uint8_t>(place, tuples);
-    head_.fail(fmt::format("was not written by sphgeo: array '{}' of type '{}'", printable(place.name), printable(place.type)));
+    head_.fail(fmt::format("was not written by sphgeo: array '{}' of type '{}'",
+                           printable(place.name), printable(place.type)));
   }
 
  private:
@@ -175,10 +190,12 @@ class Arrays {
   std::vector<double> values(const ArrayPlace& place, std::uint64_t tuples) {
     constexpr std::uint64_t safe = std::numeric_limits<std::uint64_t>::max() / 1000;
     if (tuples > safe || tuples * place.components * sizeof(double) > left_)
-      head_.fail(fmt::format("would take too much memory: array '{}' of {} x {} values", printable(place.name), tuples, place.components));
+      head_.fail(fmt::format("would take too much memory: array '{}' of {} x {} values",
+                             printable(place.name), tuples, place.components));
     const std::uint64_t count = tuples * place.components;
     left_ -= count * sizeof(double);
-    const std::string raw = compressed_ ? inflated(place, count * sizeof(T)) : plain(place, count * sizeof(T));
+    const std::string raw =
+        compressed_ ? inflated(place, count * sizeof(T)) : plain(place, count * sizeof(T));
     std::vector<double> out(count);
     for (std::size_t i = 0; i < out.size(); ++i) {
       T value;
@@ -194,13 +211,15 @@ class Arrays {
 
   std::uint64_t size_at(const ArrayPlace& place, std::uint64_t at) const {
     std::uint64_t value = 0;
-    if (at > head_.data().size() || head_.data().size() - at < sizeof value) damaged(place, "lies beyond the end of the file");
+    if (at > head_.data().size() || head_.data().size() - at < sizeof value)
+      damaged(place, "lies beyond the end of the file");
     std::memcpy(&value, head_.data().data() + at, sizeof value);
     return value;
   }
 
   std::string plain(const ArrayPlace& place, std::uint64_t bytes) const {
-    if (size_at(place, place.offset) != bytes) damaged(place, "is not as long as there are points or cells");
+    if (size_at(place, place.offset) != bytes)
+      damaged(place, "is not as long as there are points or cells");
     const std::uint64_t begin = place.offset + sizeof bytes;
     if (head_.data().size() - begin < bytes) damaged(place, "lies beyond the end of the file");
     return std::string(head_.data().substr(begin, bytes));
@@ -208,7 +227,8 @@ class Arrays {
 
   std::string inflated(const ArrayPlace& place, std::uint64_t bytes) const {
     const std::uint64_t blocks = size_at(place, place.offset);
-    const std::uint64_t size = size_at(place, place.offset + 8), last = size_at(place, place.offset + 16);
+    const std::uint64_t size = size_at(place, place.offset + 8),
+                        last = size_at(place, place.offset + 16);
     const std::uint64_t space = head_.data().size();
     if (blocks > space / 8) damaged(place, "has more blocks than fit into the file");
     if (bytes / most_deflation > space) damaged(place, "is longer than the file can hold");
@@ -224,7 +244,9 @@ class Arrays {
       const std::uint64_t wanted = b < full ? size : last;
       auto length = static_cast<uLongf>(wanted);
       const auto* source = reinterpret_cast<const Bytef*>(head_.data().data() + from);
-      if (uncompress(reinterpret_cast<Bytef*>(out.data() + to), &length, source, static_cast<uLong>(packed)) != Z_OK || length != wanted)
+      if (uncompress(reinterpret_cast<Bytef*>(out.data() + to), &length, source,
+                     static_cast<uLong>(packed)) != Z_OK ||
+          length != wanted)
         damaged(place, fmt::format("cannot be unpacked (block {} of {})", b + 1, blocks));
       from += packed;
       to += wanted;
@@ -237,19 +259,24 @@ class Arrays {
   std::uint64_t left_;  ///< bytes that may still be taken
 };
 
-void read_corners(const Head& head, Arrays& arrays, const ArrayPlace* connectivity, const ArrayPlace* types, const Layout& layout, VtuFrame& frame) {
+void read_corners(const Head& head, Arrays& arrays, const ArrayPlace* connectivity,
+                  const ArrayPlace* types, const Layout& layout, VtuFrame& frame) {
   if (!connectivity || !types) head.fail("is damaged: its cells are not described");
   if (layout.cells == 0) return;
   const std::vector<double> kinds = arrays(*types, layout.cells);
   const int corners = kinds[0] == 1 ? 1 : kinds[0] == 3 ? 2 : kinds[0] == 5 ? 3 : 0;
   for (const double k : kinds)
-    if (corners == 0 || k != kinds[0]) head.fail("was not written by sphgeo: cells other than points, lines or triangles, or mixed ones");
+    if (corners == 0 || k != kinds[0])
+      head.fail(
+          "was not written by sphgeo: cells other than points, lines or triangles, or mixed ones");
   frame.corners_per_cell = corners;
   if (corners == 1) return;
-  const std::vector<double> numbers = arrays(*connectivity, layout.cells * static_cast<std::uint64_t>(corners));
+  const std::vector<double> numbers =
+      arrays(*connectivity, layout.cells * static_cast<std::uint64_t>(corners));
   frame.corners.reserve(numbers.size());
   for (const double c : numbers) {
-    if (!(c >= 0 && c < static_cast<double>(layout.points))) head.fail("is damaged: the corner of a cell is no point");
+    if (!(c >= 0 && c < static_cast<double>(layout.points)))
+      head.fail("is damaged: the corner of a cell is no point");
     frame.corners.push_back(static_cast<Index>(c));
   }
 }
@@ -283,8 +310,10 @@ VtuFrame read_vtu(const std::string& path, const VtuReading& reading) {
     if (a.section == "Cells" && a.name == "connectivity") connectivity = &a;
     if (a.section == "Cells" && a.name == "types") types = &a;
     const bool of_cells = a.section == "CellData";
-    if ((!of_cells && a.section != "PointData") || (reading.wanted && !reading.wanted(a.name))) continue;
-    VtuColumn column{a.name, a.unit, static_cast<int>(a.components), arrays(a, of_cells ? layout.cells : layout.points)};
+    if ((!of_cells && a.section != "PointData") || (reading.wanted && !reading.wanted(a.name)))
+      continue;
+    VtuColumn column{a.name, a.unit, static_cast<int>(a.components),
+                     arrays(a, of_cells ? layout.cells : layout.points)};
     (of_cells ? frame.cell_fields : frame.point_fields).push_back(std::move(column));
   }
   if (!places || places->components != 3) head.fail("is damaged: it has no points");
@@ -300,7 +329,8 @@ std::vector<VtuColumn> vtu_fields(const std::string& path) {
   const Head head(file, path);
   std::vector<VtuColumn> fields;
   for (const ArrayPlace& a : layout_of(head).arrays)
-    if (a.section == "PointData") fields.push_back({a.name, a.unit, static_cast<int>(a.components), {}});
+    if (a.section == "PointData")
+      fields.push_back({a.name, a.unit, static_cast<int>(a.components), {}});
   return fields;
 }
 

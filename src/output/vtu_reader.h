@@ -43,8 +43,9 @@ struct VtuReading {
   std::uint64_t most_bytes = std::uint64_t{8} << 30;
 };
 
-/// Reads a .vtu file of sphgeo. Throws IoError with the path when it cannot be read, was written by another program
-/// (by another form of the format, that is), or is damaged: what it says of its sizes is not believed.
+/// Reads a .vtu file of sphgeo. Throws IoError with the path when it cannot be read, was written by
+/// another program (by another form of the format, that is), or is damaged: what it says of its
+/// sizes is not believed.
 VtuFrame read_vtu(const std::string& path, const VtuReading& reading = {});
 
 /// The names, units and components of the point fields, without their values. Throws as read_vtu.

@@ -16,7 +16,8 @@ namespace sphgeo {
 /// Symmetric tensor: xx, yy, zz, xy, yz, xz, the order of VTK; three-dimensional in every scene.
 using Sym3 = Eigen::Matrix<double, 6, 1>;
 
-/// state: evolves and is saved. reference: fixed at t = 0 and saved. derived: recomputed, never saved.
+/// state: evolves and is saved. reference: fixed at t = 0 and saved. derived: recomputed, never
+/// saved.
 enum class Lifetime { state, reference, derived };
 
 /// What the values of a field are; a tensor is symmetric, with 6 components in every dimension.
@@ -44,7 +45,8 @@ class FieldBase {
   virtual std::size_t bytes() const = 0;
   /// Memory of the values alone, as a checkpoint holds them.
   virtual std::size_t value_bytes() const = 0;
-  /// Hands over all values under this name, or takes them back for as many particles as the field has.
+  /// Hands over all values under this name, or takes them back for as many particles as the field
+  /// has.
   virtual void save(StateSink& sink, const std::string& name) const = 0;
   virtual void load(const StateSource& source, const std::string& name) = 0;
   /// The first particle whose value is not finite, or -1.

@@ -35,11 +35,16 @@ auto numbers_of(T* values, Index n) {
 template <int Dim>
 std::unique_ptr<FieldBase> make_field(const FieldSpec& spec) {
   switch (spec.type) {
-    case FieldType::scalar: return std::make_unique<Field<double>>(spec);
-    case FieldType::vector: return std::make_unique<Field<Vec<Dim>>>(spec);
-    case FieldType::tensor: return std::make_unique<Field<Sym3>>(spec);
-    case FieldType::tag: return std::make_unique<Field<std::int32_t>>(spec);
-    case FieldType::identity: return std::make_unique<Field<Id>>(spec);
+    case FieldType::scalar:
+      return std::make_unique<Field<double>>(spec);
+    case FieldType::vector:
+      return std::make_unique<Field<Vec<Dim>>>(spec);
+    case FieldType::tensor:
+      return std::make_unique<Field<Sym3>>(spec);
+    case FieldType::tag:
+      return std::make_unique<Field<std::int32_t>>(spec);
+    case FieldType::identity:
+      return std::make_unique<Field<Id>>(spec);
   }
   return nullptr;
 }

@@ -22,8 +22,8 @@ class ParticleSet {
   const std::string& name() const { return name_; }
   /// "water", "soil", "solid" or "wall".
   const std::string& phase() const { return phase_; }
-  double spacing() const { return spacing_; }        ///< dp, m
-  double smoothing_length() const { return h_; }     ///< h, m
+  double spacing() const { return spacing_; }     ///< dp, m
+  double smoothing_length() const { return h_; }  ///< h, m
   Index size() const { return size_; }
 
   /// Adds the field if it is not there yet.
@@ -63,8 +63,7 @@ class ParticleSet {
   template <class T>
   Field<T>& typed(const FieldSpec& s) const {
     const auto it = fields_.find(s.name);
-    if (it == fields_.end())
-      throw std::logic_error("set " + name_ + " has no field " + s.name);
+    if (it == fields_.end()) throw std::logic_error("set " + name_ + " has no field " + s.name);
     return static_cast<Field<T>&>(*it->second);
   }
 

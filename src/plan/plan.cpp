@@ -19,10 +19,14 @@ bool same(const FieldUse& a, const FieldUse& b) { return a.set == b.set && a.fie
 // Order within a stage: write before add, both before update, all before read.
 int rank(Access a) {
   switch (a) {
-    case Access::write: return 0;
-    case Access::add: return 1;
-    case Access::update: return 2;
-    case Access::read: return 3;
+    case Access::write:
+      return 0;
+    case Access::add:
+      return 1;
+    case Access::update:
+      return 2;
+    case Access::read:
+      return 3;
   }
   return 3;
 }
@@ -49,7 +53,8 @@ Plan<Dim>::Plan(World<Dim>& world, const std::vector<Wish>& wishes) : world_(wor
   for (auto& e : effects_) e.effect->prepare(world_);
   for (auto& e : effects_) {
     const auto& lists = e.needs.lists;
-    const bool within = std::any_of(lists.begin(), lists.end(), [](const ListUse& l) { return l.target == l.source; });
+    const bool within = std::any_of(lists.begin(), lists.end(),
+                                    [](const ListUse& l) { return l.target == l.source; });
     if (lists.empty() || within) continue;  // such effects walk everybody
     e.walked_set = lists.front().target;
     e.walked_list = &world_.list(lists.front().target, lists.front().source);
@@ -68,7 +73,8 @@ void Plan<Dim>::bind(const std::vector<Wish>& wishes) {
     Binding<Dim> binding = entry.template bind<Dim>(world_);
     if (binding.effects.empty()) unused_.push_back({entry.info.name, binding.because});
     for (auto& effect : binding.effects) {
-      PlannedEffect<Dim> planned{entry.info, std::move(effect), {}, binding.because, entry.info.name};
+      PlannedEffect<Dim> planned{
+          entry.info, std::move(effect), {}, binding.because, entry.info.name};
       if (binding.effects.size() > 1) planned.label += " (" + planned.effect->acts_on() + ")";
       planned.needs = planned.effect->needs();
       (entry.info.supporting ? supporting : effects_).push_back(std::move(planned));
@@ -119,22 +125,27 @@ void Plan<Dim>::check_producers(const std::vector<Wish>& wishes) const {
           }
       const bool derived = use.field->lifetime == Lifetime::derived;
       if (derived && !produces(use.access) && writers.empty())
-        throw std::logic_error(fmt::format("plan: effect '{}' needs field '{}' of set '{}', which no effect computes",
-                                           e.info.name, use.field->name, use.set));
+        throw std::logic_error(
+            fmt::format("plan: effect '{}' needs field '{}' of set '{}', which no effect computes",
+                        e.info.name, use.field->name, use.set));
       if (use.access == Access::add && same_stage.empty())
-        throw std::logic_error(fmt::format("plan: effect '{}' adds to field '{}' of set '{}', which no effect of stage '{}' sets first",
-                                           e.info.name, use.field->name, use.set, stage_name(e.info.stage)));
+        throw std::logic_error(
+            fmt::format("plan: effect '{}' adds to field '{}' of set '{}', which no effect of "
+                        "stage '{}' sets first",
+                        e.info.name, use.field->name, use.set, stage_name(e.info.stage)));
       if (produces(use.access) && same_stage.size() > 1)
-        throw std::logic_error(fmt::format("plan: effects '{}' and '{}' both set field '{}' of set '{}' in stage '{}'",
-                                           same_stage[0], same_stage[1], use.field->name, use.set, stage_name(e.info.stage)));
+        throw std::logic_error(fmt::format(
+            "plan: effects '{}' and '{}' both set field '{}' of set '{}' in stage '{}'",
+            same_stage[0], same_stage[1], use.field->name, use.set, stage_name(e.info.stage)));
     }
   }
   for (const Wish& w : wishes) {
     ParticleSet<Dim>& set = world_.set(w.set);
     const auto it = set.fields().find(w.field);
     if (it == set.fields().end() && !w.optional)
-      throw std::logic_error(fmt::format("plan: {} asks for field '{}' of set '{}', which no effect computes",
-                                         w.who, w.field, w.set));
+      throw std::logic_error(
+          fmt::format("plan: {} asks for field '{}' of set '{}', which no effect computes", w.who,
+                      w.field, w.set));
   }
 }
 
@@ -159,8 +170,9 @@ void Plan<Dim>::order() {
       }
     }
     if (ready == left.end())
-      throw std::logic_error(fmt::format("plan: the effects of stage '{}' wait for each other, beginning with '{}'",
-                                         stage_name(stage), left.front().info.name));
+      throw std::logic_error(
+          fmt::format("plan: the effects of stage '{}' wait for each other, beginning with '{}'",
+                      stage_name(stage), left.front().info.name));
     sorted.push_back(std::move(*ready));
     left.erase(ready);
   }
@@ -187,7 +199,8 @@ StepLimits Plan<Dim>::limits() const {
   StepLimits limits;
   for (const auto& e : effects_) e.effect->limit(world_, limits);
   // Where solids are alone, the acoustic step is theirs.
-  if (limits.acoustic == std::numeric_limits<double>::infinity()) limits.lower_acoustic(limits.solid, "solids");
+  if (limits.acoustic == std::numeric_limits<double>::infinity())
+    limits.lower_acoustic(limits.solid, "solids");
   const double factor = world_.model().numerics.time_step_factor;
   limits.advection *= factor;
   limits.acoustic *= factor;
@@ -233,8 +246,9 @@ std::vector<std::pair<std::string, FieldBase*>> Plan<Dim>::ready_fields() const 
     for (const FieldUse& made : maker.needs.fields)
       for (const auto& user : effects_)
         for (const FieldUse& use : user.needs.fields)
-          if (maker.info.stage == Stage::reinitialize && user.info.stage != Stage::reinitialize && user.info.stage != Stage::observe &&
-              made.access != Access::read && made.field->lifetime == Lifetime::derived && same(made, use))
+          if (maker.info.stage == Stage::reinitialize && user.info.stage != Stage::reinitialize &&
+              user.info.stage != Stage::observe && made.access != Access::read &&
+              made.field->lifetime == Lifetime::derived && same(made, use))
             found[made.set + "/" + made.field->name] = &world_.set(made.set).require(*made.field);
   return {found.begin(), found.end()};
 }

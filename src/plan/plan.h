@@ -24,11 +24,12 @@ struct PlannedEffect {
   std::unique_ptr<Effect<Dim>> effect;
   Needs needs;
   std::string because;
-  std::string label;  ///< the name, with what it acts on where several bear it: for time tables and checkpoints
+  std::string label;  ///< the name, with what it acts on where several bear it: for time tables and
+                      ///< checkpoints
   long calls = 0;
   double seconds = 0;
-  /// Where all its pairs are between two sets: the first of its lists, and the particles that it has met in all calls.
-  /// Only these are walked; the others of the set are far from the source.
+  /// Where all its pairs are between two sets: the first of its lists, and the particles that it
+  /// has met in all calls. Only these are walked; the others of the set are far from the source.
   std::string walked_set = {};
   const NeighborList* walked_list = nullptr;
   double walked = 0, in_set = 0;
@@ -43,7 +44,8 @@ class Plan {
  public:
   /// Binds all registered effects to the world, allocates the union of their fields, declares the
   /// union of their lists and orders them. Throws std::logic_error that names effect, set and field
-  /// when a derived field has no producer or two in one stage, or when writers and readers form a cycle.
+  /// when a derived field has no producer or two in one stage, or when writers and readers form a
+  /// cycle.
   Plan(World<Dim>& world, const std::vector<Wish>& wishes);
 
   /// Runs all effects of the stage, timing each.
@@ -61,8 +63,9 @@ class Plan {
   void save(StateSink& sink) const;
   void load(const StateSource& source);
 
-  /// Within an advection step: the derived fields that its acoustic steps find ready from the reinitialize stage.
-  /// Loading also restores what that stage left outside of the fields; the clock must show the start of the step.
+  /// Within an advection step: the derived fields that its acoustic steps find ready from the
+  /// reinitialize stage. Loading also restores what that stage left outside of the fields; the
+  /// clock must show the start of the step.
   void save_within_step(StateSink& sink) const;
   void load_within_step(const StateSource& source);
 

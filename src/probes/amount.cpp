@@ -11,7 +11,9 @@ struct AmountProbe final : Probe {
   std::string set = "water";
 
   // What tells the volume of the phase itself.
-  const FieldSpec* own_field() const { return set == "water" ? &fields::density : set == "soil" ? &fields::volume_fraction : nullptr; }
+  const FieldSpec* own_field() const {
+    return set == "water" ? &fields::density : set == "soil" ? &fields::volume_fraction : nullptr;
+  }
 
   static Schema<AmountProbe> schema() {
     Schema<AmountProbe> s("amount", "number of particles, mass and volume of a set");
@@ -21,9 +23,11 @@ struct AmountProbe final : Probe {
   std::vector<Column> columns(const Model& model) const override {
     const bool flat = model.dimension == 2;
     return {{"mass", flat ? "kg/m" : "kg", "mass"},
-            {"volume", flat ? "m2" : "m3", "sum of the particles' volumes; of water in soil that of the mixture it stands for"},
+            {"volume", flat ? "m2" : "m3",
+             "sum of the particles' volumes; of water in soil that of the mixture it stands for"},
             {"count", "1", "number of particles"},
-            {"own_volume", flat ? "m2" : "m3", "sum of m / rho: of water without the soil it is in, of soil without pores"}};
+            {"own_volume", flat ? "m2" : "m3",
+             "sum of m / rho: of water without the soil it is in, of soil without pores"}};
   }
   std::vector<FieldRequest> needs(const Model&) const override {
     std::vector<FieldRequest> out{{set, &fields::mass}, {set, &fields::volume}};
@@ -38,7 +42,9 @@ struct AmountProbe final : Probe {
     out[2] = static_cast<double>(scene.size(set));
     if (const FieldSpec* f = own_field()) {
       const auto own = scene.scalar(set, *f);
-      out[3] = ordered_sum(scene.size(set), [&](Index i) { return f == &fields::density ? m(i) / own(i) : volume(i) * own(i); });
+      out[3] = ordered_sum(scene.size(set), [&](Index i) {
+        return f == &fields::density ? m(i) / own(i) : volume(i) * own(i);
+      });
     } else {
       out[3] = out[1];
     }

@@ -15,7 +15,10 @@ struct BodyForceProbe final : Probe {
   std::string body;
 
   static Schema<BodyForceProbe> schema() {
-    Schema<BodyForceProbe> s("body_force", "force and torque on a solid by water, soil (means over the advection step) and contact (Eqs. 70, 75-79); torques about its centre of mass");
+    Schema<BodyForceProbe> s(
+        "body_force",
+        "force and torque on a solid by water, soil (means over the advection step) and contact "
+        "(Eqs. 70, 75-79); torques about its centre of mass");
     s.required("body", &BodyForceProbe::body, unit::none, "name of the body");
     return s;
   }
@@ -24,23 +27,35 @@ struct BodyForceProbe final : Probe {
     const char* name;
     const FieldSpec* field;
   };
-  static constexpr std::array<Source, 3> sources{{{"water", &fields::mean_water_force}, {"soil", &fields::mean_soil_force}, {"contact", &fields::contact_force}}};
+  static constexpr std::array<Source, 3> sources{{{"water", &fields::mean_water_force},
+                                                  {"soil", &fields::mean_soil_force},
+                                                  {"contact", &fields::contact_force}}};
 
   std::vector<Column> columns(const Model& model) const override {
     const bool flat = model.dimension == 2;
     std::vector<Column> out;
     for (const Source& source : sources) {
-      for (const Column& c : vector_columns(model, std::string(source.name) + "_", flat ? unit::stiffness : unit::force,
-                                            std::string("force of ") + source.name + (flat ? " per metre of depth" : "")))
+      for (const Column& c : vector_columns(
+               model, std::string(source.name) + "_", flat ? unit::stiffness : unit::force,
+               std::string("force of ") + source.name + (flat ? " per metre of depth" : "")))
         out.push_back(c);
-      if (flat) out.push_back({std::string(source.name) + "_torque", "N", std::string("torque of ") + source.name + " per metre of depth, about y"});
+      if (flat)
+        out.push_back({std::string(source.name) + "_torque", "N",
+                       std::string("torque of ") + source.name + " per metre of depth, about y"});
       else
-        for (const Column& c : vector_columns(model, std::string(source.name) + "_torque_", unit::moment, std::string("torque of ") + source.name)) out.push_back(c);
+        for (const Column& c :
+             vector_columns(model, std::string(source.name) + "_torque_", unit::moment,
+                            std::string("torque of ") + source.name))
+          out.push_back(c);
     }
     return out;
   }
-  void inspect(const Model& model, CheckContext& c) const override { inspect_body(model, body, "body", c); }
-  std::vector<FieldRequest> needs(const Model& model) const override { return {{set_of_body(model, body), &fields::mass}}; }
+  void inspect(const Model& model, CheckContext& c) const override {
+    inspect_body(model, body, "body", c);
+  }
+  std::vector<FieldRequest> needs(const Model& model) const override {
+    return {{set_of_body(model, body), &fields::mass}};
+  }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     const std::string set = set_of_body(scene.model(), body);
@@ -50,17 +65,20 @@ struct BodyForceProbe final : Probe {
     const auto at = scene.vector(set, fields::position);
     const auto of = scene.tag(set, fields::part);
     const auto share = [&](Index i) { return of(i) == wanted ? m(i) : 0.0; };
-    const Vec3 moment = ordered_sum(scene.size(set), [&](Index i) -> Vec3 { return share(i) * at(i); });
+    const Vec3 moment =
+        ordered_sum(scene.size(set), [&](Index i) -> Vec3 { return share(i) * at(i); });
     const Vec3 center = moment / ordered_sum(scene.size(set), [&](Index i) { return share(i); });
     const auto each = static_cast<std::size_t>(scene.dimension() == 2 ? 3 : 6);
     for (std::size_t k = 0; k < sources.size(); ++k) {
       Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
       if (scene.has_field("skin", *sources[k].field)) {
-        const auto f = scene.vector("skin", *sources[k].field), x = scene.vector("skin", fields::position);
+        const auto f = scene.vector("skin", *sources[k].field),
+                   x = scene.vector("skin", fields::position);
         const auto part = scene.tag("skin", fields::part);
         const auto on = [&](Index i) -> Vec3 { return part(i) == wanted ? f(i) : Vec3::Zero(); };
         force = ordered_sum(scene.size("skin"), on);
-        torque = ordered_sum(scene.size("skin"), [&](Index i) -> Vec3 { return (x(i) - center).cross(on(i)); });
+        torque = ordered_sum(scene.size("skin"),
+                             [&](Index i) -> Vec3 { return (x(i) - center).cross(on(i)); });
       }
       store_vector(scene, force, out, k * each);
       if (scene.dimension() == 2) out[k * each + 2] = torque.y();

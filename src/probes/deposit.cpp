@@ -17,33 +17,47 @@ struct DepositProbe final : Probe {
   bool radial = false;
 
   static Schema<DepositProbe> schema() {
-    Schema<DepositProbe> s("deposit", "run-out, height and slope of a heap that is connected to its origin");
+    Schema<DepositProbe> s("deposit",
+                           "run-out, height and slope of a heap that is connected to its origin");
     s.optional("set", &DepositProbe::set, unit::none, "the particle set");
-    s.optional("origin", &DepositProbe::origin, unit::length, "where distances start; its z is the base of heights");
-    s.optional("direction", &DepositProbe::direction, unit::none, "horizontal direction of the distances").keep_y();
-    s.optional("radial", &DepositProbe::radial, unit::none, "whether distances count from the vertical axis through the origin, in 2D to both sides");
+    s.optional("origin", &DepositProbe::origin, unit::length,
+               "where distances start; its z is the base of heights");
+    s.optional("direction", &DepositProbe::direction, unit::none,
+               "horizontal direction of the distances")
+        .keep_y();
+    s.optional(
+        "radial", &DepositProbe::radial, unit::none,
+        "whether distances count from the vertical axis through the origin, in 2D to both sides");
     s.check([](DepositProbe& p, CheckContext& c) {
       p.direction.z() = 0;
-      if (!(p.direction.norm() > 0)) c.error("direction", "the direction has no horizontal length", "give a vector such as [1, 0, 0]");
+      if (!(p.direction.norm() > 0))
+        c.error("direction", "the direction has no horizontal length",
+                "give a vector such as [1, 0, 0]");
       else p.direction.normalize();
     });
     return s;
   }
   std::vector<Column> columns(const Model&) const override {
-    return {{"runout", "m", "distance from the origin up to which the heap is connected and thicker than one layer of particles"},
+    return {{"runout", "m",
+             "distance from the origin up to which the heap is connected and thicker than one "
+             "layer of particles"},
             {"crest", "m", "largest height of the connected heap over the base"},
             {"height", "m", "height over the origin"},
-            {"slope_angle", "deg", "slope between 20 and 80 % of the crest, a line fitted to the heights; empty for a flat heap"}};
+            {"slope_angle", "deg",
+             "slope between 20 and 80 % of the crest, a line fitted to the heights; empty for a "
+             "flat heap"}};
   }
-  std::vector<FieldRequest> needs(const Model&) const override { return {{set, &fields::position}}; }
+  std::vector<FieldRequest> needs(const Model&) const override {
+    return {{set, &fields::position}};
+  }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     if (!scene.has_set(set) || scene.size(set) == 0) return;
     const auto x = scene.vector(set, fields::position);
     const double dp = scene.spacing(set), width = bin_width * dp;
-    // The highest and the farthest particle in rings (strips) of 1.5 spacings. Grains that run ahead one by one are
-    // no part of the heap: around a particle of the heap its set fills two thirds of the kernel. One layer of
-    // particles fills 0.58 of it, two layers 0.79.
+    // The highest and the farthest particle in rings (strips) of 1.5 spacings. Grains that run
+    // ahead one by one are no part of the heap: around a particle of the heap its set fills two
+    // thirds of the kernel. One layer of particles fills 0.58 of it, two layers 0.79.
     const double volume = std::pow(dp, scene.dimension());
     struct Bin {
       double height = -INFINITY, reach = -INFINITY;
@@ -62,7 +76,8 @@ struct DepositProbe final : Probe {
       bins[k].height = std::max(bins[k].height, d.z() + 0.5 * dp);
       bins[k].reach = std::max(bins[k].reach, at + 0.5 * dp);
     }
-    // Between planes of symmetry their walls cut the kernel: the heap begins with the first ring or the second.
+    // Between planes of symmetry their walls cut the kernel: the heap begins with the first ring or
+    // the second.
     const std::size_t begin = bins.size() > 1 && !std::isfinite(bins[0].height) ? 1 : 0;
     std::size_t connected = begin;
     while (connected < bins.size() && std::isfinite(bins[connected].height)) ++connected;
@@ -84,7 +99,8 @@ struct DepositProbe final : Probe {
       sxz += at * z;
     }
     const double spread = n * sxx - sx * sx;
-    if (n >= 3 && spread > 0) out[3] = -std::atan((n * sxz - sx * sz) / spread) * 180 / std::numbers::pi;
+    if (n >= 3 && spread > 0)
+      out[3] = -std::atan((n * sxz - sx * sz) / spread) * 180 / std::numbers::pi;
   }
 
  private:

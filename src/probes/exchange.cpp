@@ -14,7 +14,9 @@ struct ExchangeProbe final : Probe {
   std::string boundary;
 
   static Schema<ExchangeProbe> schema() {
-    Schema<ExchangeProbe> s("exchange", "particles and mass that have come in or gone out through an inlet, a reservoir or an outlet");
+    Schema<ExchangeProbe> s("exchange",
+                            "particles and mass that have come in or gone out through an inlet, a "
+                            "reservoir or an outlet");
     s.required("boundary", &ExchangeProbe::boundary, unit::none, "the name of the boundary");
     return s;
   }
@@ -23,7 +25,9 @@ struct ExchangeProbe final : Probe {
     for (const auto& b : model.boundaries)
       if (dynamic_cast<const ExchangeBoundary*>(b.get())) names.push_back(b->name);
     if (std::find(names.begin(), names.end(), boundary) == names.end())
-      c.error("boundary", "nothing crosses a boundary '" + boundary + "'", names.empty() ? "the deck has no inlet, reservoir or outlet" : suggestion(boundary, names, "boundaries that particles cross"));
+      c.error("boundary", "nothing crosses a boundary '" + boundary + "'",
+              names.empty() ? "the deck has no inlet, reservoir or outlet"
+                            : suggestion(boundary, names, "boundaries that particles cross"));
   }
   std::vector<Column> columns(const Model& model) const override {
     const char* kg = model.dimension == 2 ? "kg/m" : "kg";

@@ -19,11 +19,16 @@ struct FluxProbe final : Probe {
     Schema<FluxProbe> s("flux", "volume flow of a set through a plane");
     s.optional("set", &FluxProbe::set, unit::none, "the particle set");
     s.required("point", &FluxProbe::point, unit::length, "a point of the plane");
-    s.required("normal", &FluxProbe::normal, unit::none, "normal of the plane; flow along it counts positive").keep_y();
-    s.optional("region_min", &FluxProbe::region_min, unit::length, "lower corner of the region that counts");
-    s.optional("region_max", &FluxProbe::region_max, unit::length, "upper corner of the region that counts");
+    s.required("normal", &FluxProbe::normal, unit::none,
+               "normal of the plane; flow along it counts positive")
+        .keep_y();
+    s.optional("region_min", &FluxProbe::region_min, unit::length,
+               "lower corner of the region that counts");
+    s.optional("region_max", &FluxProbe::region_max, unit::length,
+               "upper corner of the region that counts");
     s.check([](FluxProbe& p, CheckContext& c) {
-      if (!(p.normal.norm() > 0)) c.error("normal", "the normal has no length", "give a vector that is not zero");
+      if (!(p.normal.norm() > 0))
+        c.error("normal", "the normal has no length", "give a vector that is not zero");
       else p.normal.normalize();
     });
     return s;
@@ -31,7 +36,9 @@ struct FluxProbe final : Probe {
   std::vector<Column> columns(const Model& model) const override {
     return {{"flow", model.dimension == 2 ? "m2/s" : "m3/s", "volume per time through the plane"}};
   }
-  std::vector<FieldRequest> needs(const Model&) const override { return {{set, &fields::velocity}, {set, &fields::volume}}; }
+  std::vector<FieldRequest> needs(const Model&) const override {
+    return {{set, &fields::velocity}, {set, &fields::volume}};
+  }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     if (!scene.has_set(set)) return;
@@ -45,7 +52,8 @@ struct FluxProbe final : Probe {
       if (share <= 0) return 0.0;
       for (int k = 0; k < 3; ++k) {
         if (k == 1 && flat) continue;
-        if ((region_min && p[k] < (*region_min)[k]) || (region_max && p[k] > (*region_max)[k])) return 0.0;
+        if ((region_min && p[k] < (*region_min)[k]) || (region_max && p[k] > (*region_max)[k]))
+          return 0.0;
       }
       // The plane as a hat function of unit area, two spacings to each side.
       return volume(i) * v(i).dot(normal) * share / width;

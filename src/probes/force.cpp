@@ -20,7 +20,9 @@ struct ForceProbe final : Probe {
     return vector_columns(model, "f", model.dimension == 2 ? unit::stiffness : unit::force,
                           model.dimension == 2 ? "force per metre of depth" : "force");
   }
-  std::vector<FieldRequest> needs(const Model&) const override { return {{"walls", &fields::wall_force}}; }
+  std::vector<FieldRequest> needs(const Model&) const override {
+    return {{"walls", &fields::wall_force}};
+  }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     const auto& all = scene.model().boundaries;

@@ -17,11 +17,15 @@ struct FrontProbe final : Probe {
   static Schema<FrontProbe> schema() {
     Schema<FrontProbe> s("front", "foremost place of a set in a direction");
     s.optional("set", &FrontProbe::set, unit::none, "the particle set");
-    s.optional("direction", &FrontProbe::direction, unit::none, "the direction, of any length").keep_y();
-    s.optional("region_min", &FrontProbe::region_min, unit::length, "lower corner of the region that counts");
-    s.optional("region_max", &FrontProbe::region_max, unit::length, "upper corner of the region that counts");
+    s.optional("direction", &FrontProbe::direction, unit::none, "the direction, of any length")
+        .keep_y();
+    s.optional("region_min", &FrontProbe::region_min, unit::length,
+               "lower corner of the region that counts");
+    s.optional("region_max", &FrontProbe::region_max, unit::length,
+               "upper corner of the region that counts");
     s.check([](FrontProbe& p, CheckContext& c) {
-      if (!(p.direction.norm() > 0)) c.error("direction", "the direction has no length", "give a vector that is not zero");
+      if (!(p.direction.norm() > 0))
+        c.error("direction", "the direction has no length", "give a vector that is not zero");
       else p.direction.normalize();
     });
     return s;
@@ -29,7 +33,9 @@ struct FrontProbe final : Probe {
   std::vector<Column> columns(const Model&) const override {
     return {{"position", "m", "foremost particle along the direction, plus half a spacing"}};
   }
-  std::vector<FieldRequest> needs(const Model&) const override { return {{set, &fields::position}}; }
+  std::vector<FieldRequest> needs(const Model&) const override {
+    return {{set, &fields::position}};
+  }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     if (!scene.has_set(set)) return;

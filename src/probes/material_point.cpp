@@ -14,20 +14,27 @@ struct MaterialPointProbe final : Probe {
   Vec3 at = Vec3::Zero();
 
   static Schema<MaterialPointProbe> schema() {
-    Schema<MaterialPointProbe> s("material_point", "displacement and velocity of a point of a solid, named by its place at rest; a linear fit to the particles around it there");
+    Schema<MaterialPointProbe> s("material_point",
+                                 "displacement and velocity of a point of a solid, named by its "
+                                 "place at rest; a linear fit to the particles around it there");
     s.required("body", &MaterialPointProbe::body, unit::none, "name of the body");
-    s.required("at", &MaterialPointProbe::at, unit::length, "the point at t = 0, before any motion");
+    s.required("at", &MaterialPointProbe::at, unit::length,
+               "the point at t = 0, before any motion");
     return s;
   }
   std::vector<Column> columns(const Model& model) const override {
     auto columns = vector_columns(model, "u", unit::length, "displacement");
-    for (const Column& c : vector_columns(model, "v", unit::speed, "velocity")) columns.push_back(c);
+    for (const Column& c : vector_columns(model, "v", unit::speed, "velocity"))
+      columns.push_back(c);
     return columns;
   }
   std::vector<FieldRequest> needs(const Model& model) const override {
-    return {{set_of_body(model, body), &fields::reference_position}, {set_of_body(model, body), &fields::velocity}};
+    return {{set_of_body(model, body), &fields::reference_position},
+            {set_of_body(model, body), &fields::velocity}};
   }
-  void inspect(const Model& model, CheckContext& c) const override { inspect_body(model, body, "body", c); }
+  void inspect(const Model& model, CheckContext& c) const override {
+    inspect_body(model, body, "body", c);
+  }
   std::vector<Vec3> places() const override { return {at}; }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
@@ -35,7 +42,8 @@ struct MaterialPointProbe final : Probe {
     if (!scene.has_set(set)) return;
     const std::int32_t wanted = body_index(scene.model(), body);
     const auto part = scene.tag(set, fields::part);
-    const auto reference = scene.vector(set, fields::reference_position), x = scene.vector(set, fields::position);
+    const auto reference = scene.vector(set, fields::reference_position),
+               x = scene.vector(set, fields::position);
     const auto v = scene.vector(set, fields::velocity);
     const double h = scene.smoothing_length(set), reach = 4 * h * h;
     // Weighted fit a + b . (X - at), exact for linear fields: also at the end of a bar.
@@ -57,10 +65,12 @@ struct MaterialPointProbe final : Probe {
     if (count < scene.dimension() + 1) return;
     if (scene.dimension() == 2) moment(2, 2) += 1;  // nothing varies across the plane
     const Eigen::FullPivLU<Eigen::Matrix4d> inverse(moment);
-    const Eigen::Matrix<double, 1, 6> fit = inverse.rcond() > 1e-6 ? Eigen::Matrix<double, 1, 6>(inverse.solve(right).row(0))
-                                                                  : Eigen::Matrix<double, 1, 6>(right.row(0) / moment(0, 0));
+    const Eigen::Matrix<double, 1, 6> fit =
+        inverse.rcond() > 1e-6 ? Eigen::Matrix<double, 1, 6>(inverse.solve(right).row(0))
+                               : Eigen::Matrix<double, 1, 6>(right.row(0) / moment(0, 0));
     store_vector(scene, fit.head<3>().transpose(), out);
-    store_vector(scene, fit.tail<3>().transpose(), out, static_cast<std::size_t>(scene.dimension()));
+    store_vector(scene, fit.tail<3>().transpose(), out,
+                 static_cast<std::size_t>(scene.dimension()));
   }
 };
 

@@ -25,20 +25,23 @@ struct MeanProbe final : Probe {
   std::shared_ptr<const Shape> region, over;
 
   static Schema<MeanProbe> schema() {
-    Schema<MeanProbe> s("mean", "mean, least and largest value of a scalar field over the particles in a region");
+    Schema<MeanProbe> s(
+        "mean", "mean, least and largest value of a scalar field over the particles in a region");
     s.optional("set", &MeanProbe::set, unit::none, "the particle set");
     s.required("field", &MeanProbe::field, unit::none, "the scalar field");
     s.optional("region", &MeanProbe::region, unit::none, "the region; auto: everywhere");
-    s.optional("over", &MeanProbe::over, unit::none, "a second region, to whose mean 'ratio' compares; auto: no ratio");
+    s.optional("over", &MeanProbe::over, unit::none,
+               "a second region, to whose mean 'ratio' compares; auto: no ratio");
     return s;
   }
   std::vector<Column> columns(const Model&) const override {
     const FieldSpec* f = scalar_field(field);
     const std::string in = f ? f->unit.symbol : "1";
-    std::vector<Column> out{{"mean", in, "mean over the particles in the region; empty where there is none"},
-                            {"least", in, "least value"},
-                            {"largest", in, "largest value"},
-                            {"count", "1", "number of particles in the region"}};
+    std::vector<Column> out{
+        {"mean", in, "mean over the particles in the region; empty where there is none"},
+        {"least", in, "least value"},
+        {"largest", in, "largest value"},
+        {"count", "1", "number of particles in the region"}};
     if (over) out.push_back({"ratio", "1", "mean over the mean in the second region"});
     return out;
   }
@@ -47,7 +50,9 @@ struct MeanProbe final : Probe {
     return {{set, f ? f : &fields::mass}, {set, &fields::position}};
   }
   void inspect(const Model&, CheckContext& c) const override {
-    if (!scalar_field(field)) c.error("field", "there is no scalar field '" + field + "'", "'sphgeo list fields' names them");
+    if (!scalar_field(field))
+      c.error("field", "there is no scalar field '" + field + "'",
+              "'sphgeo list fields' names them");
   }
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     const FieldSpec* f = scalar_field(field);

@@ -10,23 +10,30 @@
 namespace sphgeo {
 namespace {
 
-/// How deep a solid lies within other solids and walls. A surface is taken half a spacing outside of the outermost
-/// particles, and its normal points away from the particles around: so it holds for bodies that turn and bend.
+/// How deep a solid lies within other solids and walls. A surface is taken half a spacing outside
+/// of the outermost particles, and its normal points away from the particles around: so it holds
+/// for bodies that turn and bend.
 struct PenetrationProbe final : Probe {
   std::string body;
 
   static Schema<PenetrationProbe> schema() {
-    Schema<PenetrationProbe> s("penetration", "how deep the surface of a solid lies within other solids or walls; surfaces are half a spacing outside of the outermost particles");
-    s.optional("body", &PenetrationProbe::body, unit::none, "name of the body; empty: the deepest of all solids");
+    Schema<PenetrationProbe> s("penetration",
+                               "how deep the surface of a solid lies within other solids or walls; "
+                               "surfaces are half a spacing outside of the outermost particles");
+    s.optional("body", &PenetrationProbe::body, unit::none,
+               "name of the body; empty: the deepest of all solids");
     return s;
   }
   std::vector<Column> columns(const Model&) const override {
-    return {{"depth", "m", "largest depth; 0 where nothing is touched"}, {"spacings", "1", "the same over the mean spacing of the two particles"}};
+    return {{"depth", "m", "largest depth; 0 where nothing is touched"},
+            {"spacings", "1", "the same over the mean spacing of the two particles"}};
   }
   void inspect(const Model& model, CheckContext& c) const override {
     if (!body.empty()) inspect_body(model, body, "body", c);
   }
-  std::vector<FieldRequest> needs(const Model& model) const override { return {{set_of_body(model, body), &fields::mass}}; }
+  std::vector<FieldRequest> needs(const Model& model) const override {
+    return {{set_of_body(model, body), &fields::mass}};
+  }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     out[0] = out[1] = 0.0;
@@ -50,12 +57,14 @@ struct PenetrationProbe final : Probe {
       };
       const Patch others = patch(scene, "skin", x(i), [&](Index j) { return part(j) != own; });
       if (others.nearest >= 0) against(others, spacing(others.nearest));
-      if (walls) against(patch(scene, "walls", x(i), [](Index) { return true; }), scene.spacing("walls"));
+      if (walls)
+        against(patch(scene, "walls", x(i), [](Index) { return true; }), scene.spacing("walls"));
     }
   }
 
  private:
-  /// Particles around a point, the nearest of them, and the direction away from the others around that one.
+  /// Particles around a point, the nearest of them, and the direction away from the others around
+  /// that one.
   struct Patch {
     std::vector<Vec3> at;
     Index nearest = -1;
@@ -63,7 +72,8 @@ struct PenetrationProbe final : Probe {
   };
 
   template <class Select>
-  static Patch patch(const SceneView& scene, const std::string& set, const Vec3& point, Select&& select) {
+  static Patch patch(const SceneView& scene, const std::string& set, const Vec3& point,
+                     Select&& select) {
     const auto x = scene.vector(set, fields::position);
     Patch p;
     double least = std::numeric_limits<double>::infinity();
@@ -84,17 +94,20 @@ struct PenetrationProbe final : Probe {
     return p;
   }
 
-  /// Distance between the outermost particles of two patches, negative when they overlap: as for convex bodies the largest
-  /// of several directions: the normals of both, and the one between these.
-  /// Only what lies near one line along a direction counts.
-  static double gap(const Patch& a, const Patch& b, const Vec3& point, double spacing, int dimension) {
+  /// Distance between the outermost particles of two patches, negative when they overlap: as for
+  /// convex bodies the largest of several directions: the normals of both, and the one between
+  /// these. Only what lies near one line along a direction counts.
+  static double gap(const Patch& a, const Patch& b, const Vec3& point, double spacing,
+                    int dimension) {
     const Vec3 middle = 0.5 * (point + b.place);
     const double aside = 0.55 * spacing * std::sqrt(dimension - 1.0);
     double best = -std::numeric_limits<double>::infinity();
     for (const Vec3& n : {b.normal, Vec3(-a.normal), Vec3((b.normal - a.normal).normalized())}) {
       if (n.isZero(0)) continue;
       const auto along = [&](const Vec3& p) { return (p - middle).dot(n); };
-      const auto beside = [&](const Vec3& p) { return (p - middle - along(p) * n).norm() <= aside; };
+      const auto beside = [&](const Vec3& p) {
+        return (p - middle - along(p) * n).norm() <= aside;
+      };
       double low = along(point), high = along(b.place);
       for (const Vec3& p : a.at)
         if (beside(p)) low = std::min(low, along(p));

@@ -10,7 +10,8 @@ struct PressureProbe final : Probe {
   Vec3 at = Vec3::Zero();
 
   static Schema<PressureProbe> schema() {
-    Schema<PressureProbe> s("pressure", "water pressure at a fixed point, by a linear fit to the water around it");
+    Schema<PressureProbe> s(
+        "pressure", "water pressure at a fixed point, by a linear fit to the water around it");
     s.required("at", &PressureProbe::at, unit::length, "the point; it may lie on a wall");
     return s;
   }
@@ -18,7 +19,9 @@ struct PressureProbe final : Probe {
     return {{"pressure", "Pa", "water pressure; empty where there is no water"},
             {"support", "1", "share of the kernel filled with water"}};
   }
-  std::vector<FieldRequest> needs(const Model&) const override { return {{"water", &fields::pressure}, {"water", &fields::volume}}; }
+  std::vector<FieldRequest> needs(const Model&) const override {
+    return {{"water", &fields::pressure}, {"water", &fields::volume}};
+  }
   std::vector<Vec3> places() const override { return {at}; }
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     const PointFit fit(scene, "water", at);

@@ -13,7 +13,8 @@ std::vector<Column> vector_columns(const Model& model, const std::string& prefix
   return columns;
 }
 
-void store_vector(const SceneView& scene, const Vec3& value, std::span<std::optional<double>> out, std::size_t first) {
+void store_vector(const SceneView& scene, const Vec3& value, std::span<std::optional<double>> out,
+                  std::size_t first) {
   for (int k = 0; k < 3; ++k)
     if (k != 1 || scene.dimension() == 3) out[first++] = value[k];
 }

@@ -34,10 +34,11 @@ struct Probe : ProbeSpec {
 std::vector<Column> vector_columns(const Model& model, const std::string& prefix, const Unit& unit,
                                    const std::string& sentence);
 /// Stores a vector the way vector_columns orders it, from position `first` on.
-void store_vector(const SceneView& scene, const Vec3& value, std::span<std::optional<double>> out, std::size_t first = 0);
+void store_vector(const SceneView& scene, const Vec3& value, std::span<std::optional<double>> out,
+                  std::size_t first = 0);
 
-/// Estimates fields of a set at points by a weighted linear fit (moving least squares), which is exact
-/// for linear fields also on a wall, where half of the support is missing.
+/// Estimates fields of a set at points by a weighted linear fit (moving least squares), which is
+/// exact for linear fields also on a wall, where half of the support is missing.
 class PointFit {
  public:
   /// Collects the particles of `set` around the point.

@@ -30,12 +30,17 @@ class SceneView {
   virtual double smoothing_length(const std::string& set) const = 0;
   virtual double constant(const std::string& set, const std::string& key) const = 0;
   /// One value of a field of a set; throws std::logic_error when the set has no such field.
-  virtual std::function<double(Index)> scalar(const std::string& set, const FieldSpec& field) const = 0;
-  virtual std::function<Vec3(Index)> vector(const std::string& set, const FieldSpec& field) const = 0;
-  virtual std::function<Sym3(Index)> tensor(const std::string& set, const FieldSpec& field) const = 0;
-  virtual std::function<std::int32_t(Index)> tag(const std::string& set, const FieldSpec& field) const = 0;
+  virtual std::function<double(Index)> scalar(const std::string& set,
+                                              const FieldSpec& field) const = 0;
+  virtual std::function<Vec3(Index)> vector(const std::string& set,
+                                            const FieldSpec& field) const = 0;
+  virtual std::function<Sym3(Index)> tensor(const std::string& set,
+                                            const FieldSpec& field) const = 0;
+  virtual std::function<std::int32_t(Index)> tag(const std::string& set,
+                                                 const FieldSpec& field) const = 0;
   /// Calls f(i, W) for all particles of the set whose kernel reaches the point; W in 1/m^d.
-  virtual void near(const std::string& set, const Vec3& at, const std::function<void(Index, double)>& f) const = 0;
+  virtual void near(const std::string& set, const Vec3& at,
+                    const std::function<void(Index, double)>& f) const = 0;
   /// All zero for a boundary that nothing crosses.
   virtual Crossings crossings(const std::string& boundary) const = 0;
   /// The box of the scene, m.

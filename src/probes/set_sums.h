@@ -12,10 +12,12 @@ namespace sphgeo {
 /// Energies of a set, J (J/m in 2D).
 struct Energies {
   double kinetic = 0;
-  double potential = 0;   ///< in the deck's gravity, about the origin
-  double internal = 0;    ///< of compression, zero at rho0
+  double potential = 0;  ///< in the deck's gravity, about the origin
+  double internal = 0;   ///< of compression, zero at rho0
   double total() const { return kinetic + potential + internal; }
-  Energies operator+(const Energies& e) const { return {kinetic + e.kinetic, potential + e.potential, internal + e.internal}; }
+  Energies operator+(const Energies& e) const {
+    return {kinetic + e.kinetic, potential + e.potential, internal + e.internal};
+  }
 };
 
 inline Energies water_energies(const SceneView& scene) {
@@ -26,14 +28,14 @@ inline Energies water_energies(const SceneView& scene) {
   const auto rho = scene.scalar("water", fields::density);
   const auto x = scene.vector("water", fields::position);
   const auto v = scene.vector("water", fields::velocity);
-  const double c = scene.constant("water", "sound_speed"), rho0 = scene.constant("water", "density");
+  const double c = scene.constant("water", "sound_speed"),
+               rho0 = scene.constant("water", "density");
   const Vec3 g = scene.model().gravity;
   e.kinetic = ordered_sum(n, [&](Index i) { return 0.5 * m(i) * v(i).squaredNorm(); });
   e.potential = ordered_sum(n, [&](Index i) { return -m(i) * g.dot(x(i)); });
   // The integral of p / rho^2 d rho from rho0, with p of Eq. 26.
-  e.internal = ordered_sum(n, [&](Index i) {
-    return m(i) * c * c * (std::log(rho(i) / rho0) + rho0 / rho(i) - 1);
-  });
+  e.internal = ordered_sum(
+      n, [&](Index i) { return m(i) * c * c * (std::log(rho(i) / rho0) + rho0 / rho(i) - 1); });
   return e;
 }
 
@@ -60,7 +62,8 @@ inline Energies soil_energies(const SceneView& scene) {
     const double numbers[6] = {s[0], s[1], s[2], s[3], s[4], s[5]};
     const StressInvariants<double> invariants(numbers);
     const auto& [two_shear, bulk_18] = moduli[static_cast<std::size_t>(part(i))];
-    return volume(i) * (invariants.second / two_shear + invariants.first * invariants.first / bulk_18);
+    return volume(i) *
+           (invariants.second / two_shear + invariants.first * invariants.first / bulk_18);
   });
   return e;
 }

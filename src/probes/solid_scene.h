@@ -18,7 +18,8 @@ inline std::int32_t body_index(const Model& model, const std::string& name) {
   return -1;
 }
 
-/// The set that holds a solid body; "solids" when the name is empty or no solid (check names the mistake).
+/// The set that holds a solid body; "solids" when the name is empty or no solid (check names the
+/// mistake).
 inline std::string set_of_body(const Model& model, const std::string& name) {
   const std::int32_t b = body_index(model, name);
   const std::string set = b < 0 ? "" : solid_set_of(model, static_cast<std::size_t>(b));
@@ -26,7 +27,8 @@ inline std::string set_of_body(const Model& model, const std::string& name) {
 }
 
 /// Reports a body that is no solid of the deck.
-inline void inspect_body(const Model& model, const std::string& name, const char* key, CheckContext& c) {
+inline void inspect_body(const Model& model, const std::string& name, const char* key,
+                         CheckContext& c) {
   const std::int32_t b = body_index(model, name);
   if (b >= 0 && !solid_set_of(model, static_cast<std::size_t>(b)).empty()) return;
   c.error(key, b < 0 ? "there is no body '" + name + "'" : "body '" + name + "' is no solid",
@@ -38,11 +40,14 @@ inline double contact_energy(const SceneView& scene, std::int32_t body = -1) {
   if (!scene.has_field("skin", fields::contact_energy)) return 0;
   const auto energy = scene.scalar("skin", fields::contact_energy);
   const auto part = scene.tag("skin", fields::part);
-  return ordered_sum(scene.size("skin"), [&](Index i) { return body < 0 || part(i) == body ? energy(i) : 0.0; });
+  return ordered_sum(scene.size("skin"),
+                     [&](Index i) { return body < 0 || part(i) == body ? energy(i) : 0.0; });
 }
 
-/// Energies of the solids of a set: `internal` is the strain energy. `body`: of that one alone, or -1.
-inline Energies solid_energies(const SceneView& scene, const std::string& set, std::int32_t body = -1) {
+/// Energies of the solids of a set: `internal` is the strain energy. `body`: of that one alone, or
+/// -1.
+inline Energies solid_energies(const SceneView& scene, const std::string& set,
+                               std::int32_t body = -1) {
   Energies e;
   if (!scene.has_set(set)) return e;
   const Index n = scene.size(set);

@@ -13,7 +13,9 @@ struct StressProbe final : Probe {
   Vec3 at = Vec3::Zero();
 
   static Schema<StressProbe> schema() {
-    Schema<StressProbe> s("stress", "effective stress, plastic strain and volume fraction of the soil at a fixed point, by a linear fit to the soil around it");
+    Schema<StressProbe> s("stress",
+                          "effective stress, plastic strain and volume fraction of the soil at a "
+                          "fixed point, by a linear fit to the soil around it");
     s.required("at", &StressProbe::at, unit::length, "the point; it may lie on a wall");
     return s;
   }
@@ -31,7 +33,10 @@ struct StressProbe final : Probe {
             {"support", "1", "share of the kernel filled with soil"}};
   }
   std::vector<FieldRequest> needs(const Model&) const override {
-    return {{"soil", &fields::stress}, {"soil", &fields::volume}, {"soil", &fields::plastic_strain}, {"soil", &fields::volume_fraction}};
+    return {{"soil", &fields::stress},
+            {"soil", &fields::volume},
+            {"soil", &fields::plastic_strain},
+            {"soil", &fields::volume_fraction}};
   }
   std::vector<Vec3> places() const override { return {at}; }
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {

@@ -19,17 +19,25 @@ struct StressPathProbe final : Probe {
   std::optional<std::vector<Expression>> gradient;
 
   static Schema<StressPathProbe> schema() {
-    Schema<StressPathProbe> s("stress_path", "a material point of soil led through a path of deformation, without particles");
-    s.required("material", &StressPathProbe::material, unit::none, "name of a material of type soil");
+    Schema<StressPathProbe> s(
+        "stress_path",
+        "a material point of soil led through a path of deformation, without particles");
+    s.required("material", &StressPathProbe::material, unit::none,
+               "name of a material of type soil");
     s.required("path", &StressPathProbe::path, unit::none,
-               "oedometric: compression along z with fixed sides; triaxial: with sides under the initial pressure; simple_shear: "
+               "oedometric: compression along z with fixed sides; triaxial: with sides under the "
+               "initial pressure; simple_shear: "
                "dv_x/dz; gradient: as given")
         .choices({"oedometric", "triaxial", "simple_shear", "gradient"});
     s.optional("rate", &StressPathProbe::rate, unit::rate, "rate of compression or shear");
-    s.optional("step", &StressPathProbe::step, unit::time, "time step of the stress update").above(0);
-    s.optional("pressure", &StressPathProbe::pressure, unit::pressure, "initial isotropic pressure").at_least(0);
+    s.optional("step", &StressPathProbe::step, unit::time, "time step of the stress update")
+        .above(0);
+    s.optional("pressure", &StressPathProbe::pressure, unit::pressure, "initial isotropic pressure")
+        .at_least(0);
     s.optional("gradient", &StressPathProbe::gradient, unit::rate,
-               "for path: gradient: dv_x/dx, dv_x/dy, dv_x/dz, dv_y/dx ... dv_z/dz, formulas of t").items(9, 9).only_of("t");
+               "for path: gradient: dv_x/dx, dv_x/dy, dv_x/dz, dv_y/dx ... dv_z/dz, formulas of t")
+        .items(9, 9)
+        .only_of("t");
     s.check([](StressPathProbe& p, CheckContext& c) {
       if (p.gradient.has_value() != (p.path == "gradient"))
         c.error("gradient", "'gradient' belongs to path: gradient, which needs it");
@@ -45,14 +53,17 @@ struct StressPathProbe final : Probe {
             {"xz", "Pa", "stress"},
             {"pressure", "Pa", "mean pressure, compression positive"},
             {"root_j2", "Pa", "sqrt(J2)"},
-            {"outside", "1", "largest distance from the yield surface so far, outside of it, in parts of k_c or of the mean pressure"},
+            {"outside", "1",
+             "largest distance from the yield surface so far, outside of it, in parts of k_c or of "
+             "the mean pressure"},
             {"plastic_strain", "1", "equivalent plastic strain"},
             {"plastic_work", "J/m3", "plastic work per volume"}};
   }
   std::vector<FieldRequest> needs(const Model&) const override { return {}; }
   void inspect(const Model& model, CheckContext& c) const override {
     if (!dynamic_cast<const Soil*>(model.material(material)))
-      c.error("material", "there is no soil material '" + material + "'", "name an entry of 'materials' that is of type soil", "E021");
+      c.error("material", "there is no soil material '" + material + "'",
+              "name an entry of 'materials' that is of type soil", "E021");
   }
 
   // A sample starts at t = 0 again: the probe keeps nothing between samples.
@@ -83,15 +94,17 @@ struct StressPathProbe final : Probe {
 
  private:
   // The velocity gradient of the step around time t.
-  void lead(double t, const DruckerPrager<double>& m, const double (&s)[6], double (&g)[3][3]) const {
+  void lead(double t, const DruckerPrager<double>& m, const double (&s)[6],
+            double (&g)[3][3]) const {
     if (path == "simple_shear") g[0][2] = rate;
     if (path == "oedometric" || path == "triaxial") g[2][2] = -rate;
     if (path == "triaxial") g[0][0] = g[1][1] = lateral_rate(m, s);
     if (path == "gradient")
       for (std::size_t k = 0; k < 9; ++k) g[k / 3][k % 3] = (*gradient)[k](Vec3::Zero(), t);
   }
-  // The rate at which the sides give way so that their stress stays, by bisection: the stress after the
-  // step grows with it. Between no volume change of a dilating soil and no lateral strain at all.
+  // The rate at which the sides give way so that their stress stays, by bisection: the stress after
+  // the step grows with it. Between no volume change of a dilating soil and no lateral strain at
+  // all.
   double lateral_rate(const DruckerPrager<double>& m, const double (&s)[6]) const {
     double lo = -std::abs(rate), hi = 10 * std::abs(rate);
     for (int n = 0; n < 80; ++n) {

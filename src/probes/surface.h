@@ -11,8 +11,11 @@
 
 namespace sphgeo {
 
-/// Height of the topmost surface of the set above each place (z is ignored); empty where there is none.
-inline std::vector<std::optional<double>> surface_heights(const SceneView& scene, const std::string& set, const std::vector<Vec3>& places) {
+/// Height of the topmost surface of the set above each place (z is ignored); empty where there is
+/// none.
+inline std::vector<std::optional<double>> surface_heights(const SceneView& scene,
+                                                          const std::string& set,
+                                                          const std::vector<Vec3>& places) {
   std::vector<std::optional<double>> heights(places.size());
   if (!scene.has_set(set) || scene.size(set) == 0) return heights;
   const double dp = scene.spacing(set);
@@ -23,7 +26,8 @@ inline std::vector<std::optional<double>> surface_heights(const SceneView& scene
   for (Index i = 0; i < scene.size(set); ++i) {
     const Vec3 p = x(i);
     for (std::size_t k = 0; k < places.size(); ++k) {
-      if (std::abs(p.x() - places[k].x()) > reach || std::abs(p.y() - places[k].y()) > reach) continue;
+      if (std::abs(p.x() - places[k].x()) > reach || std::abs(p.y() - places[k].y()) > reach)
+        continue;
       top[k] = std::max(top[k], p.z());
       bottom[k] = std::min(bottom[k], p.z());
     }
@@ -31,7 +35,8 @@ inline std::vector<std::optional<double>> surface_heights(const SceneView& scene
   for (std::size_t k = 0; k < places.size(); ++k) {
     const auto filled = [&](double z) {
       double sum = 0;
-      scene.near(set, {places[k].x(), places[k].y(), z}, [&](Index i, double w) { sum += volume(i) * w; });
+      scene.near(set, {places[k].x(), places[k].y(), z},
+                 [&](Index i, double w) { sum += volume(i) * w; });
       return sum;
     };
     heights[k] = surface_height(top[k], bottom[k], dp, filled);

@@ -18,20 +18,29 @@ struct SurfaceProfileProbe final : Probe {
   int points = 21;
 
   static Schema<SurfaceProfileProbe> schema() {
-    Schema<SurfaceProfileProbe> s("surface_profile", "heights of the topmost surface of a set along a line");
+    Schema<SurfaceProfileProbe> s("surface_profile",
+                                  "heights of the topmost surface of a set along a line");
     s.optional("set", &SurfaceProfileProbe::set, unit::none, "the particle set");
-    s.required("from", &SurfaceProfileProbe::from, unit::length, "start of the line; its z is ignored");
+    s.required("from", &SurfaceProfileProbe::from, unit::length,
+               "start of the line; its z is ignored");
     s.required("to", &SurfaceProfileProbe::to, unit::length, "end of the line; its z is ignored");
-    s.optional("points", &SurfaceProfileProbe::points, unit::none, "number of places, both ends included").at_least(2).at_most(1000);
+    s.optional("points", &SurfaceProfileProbe::points, unit::none,
+               "number of places, both ends included")
+        .at_least(2)
+        .at_most(1000);
     return s;
   }
   std::vector<Column> columns(const Model&) const override {
     std::vector<Column> columns;
     for (int k = 0; k < points; ++k) {
       const Vec3 at = place(k);
-      columns.push_back({fmt::format("height_{}", k), "m", fmt::format("z of the surface at x = {:.6g} m, y = {:.6g} m; empty where there is none", at.x(), at.y())});
+      columns.push_back(
+          {fmt::format("height_{}", k), "m",
+           fmt::format("z of the surface at x = {:.6g} m, y = {:.6g} m; empty where there is none",
+                       at.x(), at.y())});
     }
-    columns.push_back({"slope_angle", "deg", "slope of the line that fits the heights best, rising from start to end"});
+    columns.push_back({"slope_angle", "deg",
+                       "slope of the line that fits the heights best, rising from start to end"});
     return columns;
   }
   std::vector<FieldRequest> needs(const Model&) const override { return {{set, &fields::volume}}; }
@@ -54,7 +63,8 @@ struct SurfaceProfileProbe final : Probe {
       sxz += x * *z;
     }
     const double spread = n * sxx - sx * sx;
-    if (n >= 2 && spread > 0) out.back() = std::atan((n * sxz - sx * sz) / spread) * 180 / std::numbers::pi;
+    if (n >= 2 && spread > 0)
+      out.back() = std::atan((n * sxz - sx * sz) / spread) * 180 / std::numbers::pi;
   }
 
  private:

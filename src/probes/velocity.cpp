@@ -11,7 +11,8 @@ struct VelocityProbe final : Probe {
   Vec3 at = Vec3::Zero();
 
   static Schema<VelocityProbe> schema() {
-    Schema<VelocityProbe> s("velocity", "velocity at a fixed point, by a linear fit to the set around it");
+    Schema<VelocityProbe> s("velocity",
+                            "velocity at a fixed point, by a linear fit to the set around it");
     s.optional("set", &VelocityProbe::set, unit::none, "the particle set");
     s.required("at", &VelocityProbe::at, unit::length, "the point");
     return s;
@@ -19,7 +20,9 @@ struct VelocityProbe final : Probe {
   std::vector<Column> columns(const Model& model) const override {
     return vector_columns(model, "v", unit::speed, "velocity; empty where there is nothing");
   }
-  std::vector<FieldRequest> needs(const Model&) const override { return {{set, &fields::velocity}, {set, &fields::volume}}; }
+  std::vector<FieldRequest> needs(const Model&) const override {
+    return {{set, &fields::velocity}, {set, &fields::volume}};
+  }
   std::vector<Vec3> places() const override { return {at}; }
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     const PointFit fit(scene, set, at);

@@ -14,7 +14,8 @@ struct WaterLevelProbe final : Probe {
   static Schema<WaterLevelProbe> schema() {
     Schema<WaterLevelProbe> s("water_level", "height of the topmost water surface at a place");
     s.required("at", &WaterLevelProbe::at, unit::length, "the place; its z is ignored");
-    s.optional("minus", &WaterLevelProbe::minus, unit::length, "a second place, whose level 'difference' takes off; auto: no difference");
+    s.optional("minus", &WaterLevelProbe::minus, unit::length,
+               "a second place, whose level 'difference' takes off; auto: no difference");
     return s;
   }
   std::vector<Column> columns(const Model&) const override {
@@ -22,10 +23,13 @@ struct WaterLevelProbe final : Probe {
     if (minus) out.push_back({"difference", "m", "level less that at the second place"});
     return out;
   }
-  std::vector<FieldRequest> needs(const Model&) const override { return {{"water", &fields::volume}}; }
+  std::vector<FieldRequest> needs(const Model&) const override {
+    return {{"water", &fields::volume}};
+  }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
-    const auto levels = surface_heights(scene, "water", minus ? std::vector<Vec3>{at, *minus} : std::vector<Vec3>{at});
+    const auto levels = surface_heights(
+        scene, "water", minus ? std::vector<Vec3>{at, *minus} : std::vector<Vec3>{at});
     out[0] = levels[0];
     if (minus && levels[0] && levels[1]) out[1] = *levels[0] - *levels[1];
   }

@@ -20,8 +20,9 @@ namespace {
 constexpr double whole = 1 - 1e-9;
 // Finer cells along the edge of one that a surface cuts.
 int parts(int dim) { return dim == 3 ? 4 : 12; }
-// Width of the draws about the middle of their stretch. 0 would leave no choice to the seed; after 100 steps 1 gives
-// no other spread than 0.5 (0.2 to 0.7 %), but clumps more at the start where porosity varies (7 against 5.5 %).
+// Width of the draws about the middle of their stretch. 0 would leave no choice to the seed; after
+// 100 steps 1 gives no other spread than 0.5 (0.2 to 0.7 %), but clumps more at the start where
+// porosity varies (7 against 5.5 %).
 constexpr double draw_width = 0.5;
 
 /// The lattice of fill_lattice, with the cells whose centres lie outside.
@@ -36,12 +37,17 @@ struct Lattice {
     origin = box.lo;
     for (int k = 0; k < 3; ++k)
       count[static_cast<std::size_t>(k)] =
-          dim == 2 && k == 1 ? 1 : std::max<Index>(1, static_cast<Index>(std::ceil((box.hi[k] - box.lo[k]) / dp - 1e-6)));
+          dim == 2 && k == 1
+              ? 1
+              : std::max<Index>(1,
+                                static_cast<Index>(std::ceil((box.hi[k] - box.lo[k]) / dp - 1e-6)));
     if (dim == 2) origin.y() = -0.5 * dp;
   }
   Index rows() const { return count[1] * count[2]; }
   Vec3 centre(Index i, Index row) const {
-    return origin + dp * Vec3(static_cast<double>(i) + 0.5, static_cast<double>(row % count[1]) + 0.5, static_cast<double>(row / count[1]) + 0.5);
+    return origin + dp * Vec3(static_cast<double>(i) + 0.5,
+                              static_cast<double>(row % count[1]) + 0.5,
+                              static_cast<double>(row / count[1]) + 0.5);
   }
 };
 
@@ -59,7 +65,11 @@ void for_each_part(const Vec3& at, double edge, int n, int dim, F&& f) {
 class CellWater {
  public:
   CellWater(const Shape& body, const WaterTarget& target, double dp, int dim)
-      : body_(body), target_(target), dp_(dp), dim_(dim), half_diagonal_(0.5 * std::sqrt(dim) * dp * (1 + 1e-9)) {}
+      : body_(body),
+        target_(target),
+        dp_(dp),
+        dim_(dim),
+        half_diagonal_(0.5 * std::sqrt(dim) * dp * (1 + 1e-9)) {}
 
   double operator()(const Vec3& at) const {
     const double d = distance_near(body_, at, half_diagonal_);
@@ -82,8 +92,10 @@ class CellWater {
     return sum / std::pow(n, dim_);
   }
   double uncut(int soil, const Vec3& at) const {
-    if (target_.soils()[static_cast<std::size_t>(soil)].amount.is_constant()) return checked(target_.fraction_in(soil, at), at);
-    // Gauss points lie 1/sqrt(12) of the edge beside the middle: where the halves of a larger cell have theirs.
+    if (target_.soils()[static_cast<std::size_t>(soil)].amount.is_constant())
+      return checked(target_.fraction_in(soil, at), at);
+    // Gauss points lie 1/sqrt(12) of the edge beside the middle: where the halves of a larger cell
+    // have theirs.
     double sum = 0, low = 2, high = -1;
     for_each_part(at, dp_ * 2 / std::sqrt(3.0), 2, dim_, [&](const Vec3& p) {
       const double f = checked(target_.fraction_in(soil, p), p);
@@ -95,16 +107,23 @@ class CellWater {
     // A formula with a jump.
     sum = 0;
     const int n = parts(dim_);
-    for_each_part(at, dp_, n, dim_, [&](const Vec3& p) { sum += checked(target_.fraction_in(soil, p), p); });
+    for_each_part(at, dp_, n, dim_,
+                  [&](const Vec3& p) { sum += checked(target_.fraction_in(soil, p), p); });
     return sum / std::pow(n, dim_);
   }
   static double checked(double fraction, const Vec3& at) {
     if (fraction >= WaterTarget::smallest && fraction <= 1 + 1e-12) return std::min(fraction, 1.0);
     const std::string place = fmt::format("({:.4g}, {:.4g}, {:.4g})", at.x(), at.y(), at.z());
     if (fraction < WaterTarget::smallest && fraction >= 0)
-      throw Error(ExitCode::usage, fmt::format("the pores of the soil at {} hold {:.3g} of its volume of water, less than {}: too little to be filled with particles",
-                                               place, fraction, WaterTarget::smallest));
-    throw Error(ExitCode::usage, fmt::format("the volume fraction of the soil in the water at {} is {}, and not between 0 and 1", place, 1 - fraction));
+      throw Error(ExitCode::usage,
+                  fmt::format("the pores of the soil at {} hold {:.3g} of its volume of water, "
+                              "less than {}: too little to be filled with particles",
+                              place, fraction, WaterTarget::smallest));
+    throw Error(
+        ExitCode::usage,
+        fmt::format(
+            "the volume fraction of the soil in the water at {} is {}, and not between 0 and 1",
+            place, 1 - fraction));
   }
 
   const Shape& body_;
@@ -124,7 +143,9 @@ void spread_marks(std::vector<char>& marks, const std::array<Index, 3>& count, I
       std::vector<char> line(static_cast<std::size_t>(n));
       for (Index l = begin; l < end; ++l) {
         const Index start = l / stride * stride * n + l % stride;
-        const auto at = [&](Index k) -> char& { return marks[static_cast<std::size_t>(start + k * stride)]; };
+        const auto at = [&](Index k) -> char& {
+          return marks[static_cast<std::size_t>(start + k * stride)];
+        };
         Index last = -reach - 1;  // the marked cell before
         for (Index k = 0; k < n; ++k) {
           if (at(k)) last = k;
@@ -143,10 +164,12 @@ void spread_marks(std::vector<char>& marks, const std::array<Index, 3>& count, I
 
 }  // namespace
 
-std::vector<Candidate> candidates(const Shape& body, const WaterTarget& target, double dp, int dim, double reach) {
+std::vector<Candidate> candidates(const Shape& body, const WaterTarget& target, double dp, int dim,
+                                  double reach) {
   const Aabb box = body.box();
   const Vec3 cells = ((box.hi - box.lo) / dp).cwiseMax(1.0);
-  if (!(cells.allFinite() && (dim == 3 ? cells.prod() : cells.x() * cells.z()) <= largest_fill)) return fill_lattice(body, dp, dim), std::vector<Candidate>{};
+  if (!(cells.allFinite() && (dim == 3 ? cells.prod() : cells.x() * cells.z()) <= largest_fill))
+    return fill_lattice(body, dp, dim), std::vector<Candidate>{};
   if (box.empty()) return {};
   const Lattice lattice(body, dp, dim);
   const CellWater water(body, target, dp, dim);
@@ -164,18 +187,22 @@ std::vector<Candidate> candidates(const Shape& body, const WaterTarget& target, 
   spread_marks(marks, lattice.count, static_cast<Index>(std::ceil(reach / dp)));
   std::vector<Candidate> out;
   for (std::size_t k = 0; k < filled.size(); ++k)
-    if (filled[k] > 1e-9) out.push_back({lattice.centre(static_cast<Index>(k) % nx, static_cast<Index>(k) / nx), filled[k], marks[k] != 0});
+    if (filled[k] > 1e-9)
+      out.push_back({lattice.centre(static_cast<Index>(k) % nx, static_cast<Index>(k) / nx),
+                     filled[k], marks[k] != 0});
   if (dim == 2)
     for (Candidate& c : out) c.at.y() = 0;
   return out;
 }
 
 double water_volume(const std::vector<Candidate>& all) {
-  return ordered_sum(static_cast<Index>(all.size()), [&](Index k) { return all[static_cast<std::size_t>(k)].water; });
+  return ordered_sum(static_cast<Index>(all.size()),
+                     [&](Index k) { return all[static_cast<std::size_t>(k)].water; });
 }
 
 std::uint64_t hilbert_index(const std::uint32_t* cell, int dim, int bits) {
-  // Skilling's transform (AIP Conf. Proc. 707, 381): undo the turns of all finer levels, then Gray-code.
+  // Skilling's transform (AIP Conf. Proc. 707, 381): undo the turns of all finer levels, then
+  // Gray-code.
   std::uint32_t x[3] = {cell[0], cell[1], dim == 3 ? cell[2] : 0};
   for (std::uint32_t level = 1u << (bits - 1); level > 1; level >>= 1) {
     const std::uint32_t below = level - 1;
@@ -212,7 +239,9 @@ std::vector<std::size_t> along_curve(const std::vector<Candidate>& all, double d
   std::vector<std::pair<std::uint64_t, std::size_t>> keys;
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (all[k].water == 1) continue;
-    const auto cell = [&](int axis) { return static_cast<std::uint32_t>(std::llround((all[k].at[axis] - box.lo[axis]) / dp)); };
+    const auto cell = [&](int axis) {
+      return static_cast<std::uint32_t>(std::llround((all[k].at[axis] - box.lo[axis]) / dp));
+    };
     const std::uint32_t flat[2] = {cell(0), cell(2)}, full[3] = {cell(0), cell(1), cell(2)};
     keys.emplace_back(hilbert_index(dim == 2 ? flat : full, dim, bits), k);
   }
@@ -224,24 +253,30 @@ std::vector<std::size_t> along_curve(const std::vector<Candidate>& all, double d
 
 }  // namespace
 
-std::vector<std::size_t> accept(const std::vector<Candidate>& all, Acceptance kind, std::uint64_t seed, double dp, int dim) {
+std::vector<std::size_t> accept(const std::vector<Candidate>& all, Acceptance kind,
+                                std::uint64_t seed, double dp, int dim) {
   std::vector<std::size_t> out;
   for (std::size_t k = 0; k < all.size(); ++k)
     if (all[k].water == 1) out.push_back(k);
   const std::vector<std::size_t> cut = along_curve(all, dp, dim);
   double volume = 0;
   for (const std::size_t k : cut) volume += all[k].water;
-  const auto wanted = std::min<std::size_t>(static_cast<std::size_t>(std::llround(volume)), cut.size());
+  const auto wanted =
+      std::min<std::size_t>(static_cast<std::size_t>(std::llround(volume)), cut.size());
   if (kind == Acceptance::independent) {
-    // The first arrivals of clocks that run as fast as there is water: each accepted by its own draw, but for
-    // the total, which is that of the water.
+    // The first arrivals of clocks that run as fast as there is water: each accepted by its own
+    // draw, but for the total, which is that of the water.
     std::vector<std::pair<double, std::size_t>> arrival;
-    for (const std::size_t k : cut) arrival.emplace_back(-std::log1p(-random_uniform(seed, k)) / -std::log1p(-std::min(all[k].water, whole)), k);
+    for (const std::size_t k : cut)
+      arrival.emplace_back(
+          -std::log1p(-random_uniform(seed, k)) / -std::log1p(-std::min(all[k].water, whole)), k);
     std::sort(arrival.begin(), arrival.end());
     for (std::size_t k = 0; k < wanted; ++k) out.push_back(arrival[k].second);
   } else {
     const double scale = volume > 0 ? static_cast<double>(wanted) / volume : 1;
-    const auto threshold = [&](std::size_t n) { return static_cast<double>(n) + 0.5 + draw_width * (random_uniform(seed, n) - 0.5); };
+    const auto threshold = [&](std::size_t n) {
+      return static_cast<double>(n) + 0.5 + draw_width * (random_uniform(seed, n) - 0.5);
+    };
     std::size_t due = 0, taken = 0;  // thresholds passed, particles placed
     double sum = 0;
     for (std::size_t m = 0; m < cut.size() && taken < wanted; ++m) {

@@ -10,10 +10,14 @@ namespace {
 constexpr double step = 1.2;
 }  // namespace
 
-MissingSupport::MissingSupport(const Shape& water, const Aabb& around, double h_low, double h_high, int dim) {
-  const int intervals = static_cast<int>(std::ceil(std::log(h_high / h_low) / std::log(step) - 1e-9));
+MissingSupport::MissingSupport(const Shape& water, const Aabb& around, double h_low, double h_high,
+                               int dim) {
+  const int intervals =
+      static_cast<int>(std::ceil(std::log(h_high / h_low) / std::log(step) - 1e-9));
   for (int k = 0; k <= intervals; ++k) {
-    h_.push_back(intervals == 0 ? h_low : h_low * std::pow(h_high / h_low, static_cast<double>(k) / intervals));
+    h_.push_back(intervals == 0
+                     ? h_low
+                     : h_low * std::pow(h_high / h_low, static_cast<double>(k) / intervals));
     mesh_.emplace_back(water, around, h_.back() / 2.6, RelaxKernel(h_.back(), dim), dim);
   }
 }

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cctype>
+#include <cmath>
 
 #include "core/hash.h"
 #include "core/text.h"
@@ -42,26 +42,33 @@ bool overlap(const Shape& a, const Shape& b, double dp, int dim) {
   for (int k = 0; k < n.z(); ++k)
     for (int j = 0; j < n.y(); ++j)
       for (int i = 0; i < n.x(); ++i) {
-        const Vec3 p = box.lo + size.cwiseProduct(Vec3((i + 0.5) / n.x(), (j + 0.5) / n.y(), (k + 0.5) / n.z()));
+        const Vec3 p = box.lo + size.cwiseProduct(
+                                    Vec3((i + 0.5) / n.x(), (j + 0.5) / n.y(), (k + 0.5) / n.z()));
         if (a.bound(p) < -1e-6 * dp && b.bound(p) < -1e-6 * dp) return true;
       }
   return false;
 }
 
-bool boxes_meet(const Shape& a, const Shape& b, double reach) { return !common(a.box().grown(reach), b.box()).empty(); }
+bool boxes_meet(const Shape& a, const Shape& b, double reach) {
+  return !common(a.box().grown(reach), b.box()).empty();
+}
 
 /// Whether a formula uses a name.
 bool uses(const std::string& formula, const std::string& name) {
-  const auto part_of_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  const auto part_of_name = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_';
+  };
   for (auto at = formula.find(name); at != std::string::npos; at = formula.find(name, at + 1)) {
     const auto end = at + name.size();
-    if ((at == 0 || !part_of_name(formula[at - 1])) && (end == formula.size() || !part_of_name(formula[end]))) return true;
+    if ((at == 0 || !part_of_name(formula[at - 1])) &&
+        (end == formula.size() || !part_of_name(formula[end])))
+      return true;
   }
   return false;
 }
 
-/// A shape as the deck gives it. What it reads from a file is told by its distances at some points, to a
-/// millionth of its size: the name alone does not say what is in it.
+/// A shape as the deck gives it. What it reads from a file is told by its distances at some points,
+/// to a millionth of its size: the name alone does not say what is in it.
 Node described(const std::shared_ptr<const Shape>& shape) {
   WriteStyle style;
   style.for_hash = true;
@@ -72,8 +79,11 @@ Node described(const std::shared_ptr<const Shape>& shape) {
   std::uint64_t hash = fnv1a_start;
   for (std::uint64_t k = 0; k < 64; ++k) {
     Vec3 p;
-    for (int a = 0; a < 3; ++a) p[a] = box.lo[a] + random_uniform(7, 3 * k + static_cast<std::uint64_t>(a)) * (box.hi[a] - box.lo[a]);
-    hash = fnv1a(fmt::format("{:.6f} ", std::round(1e6 * shape->signed_distance(p) / size) / 1e6), hash);
+    for (int a = 0; a < 3; ++a)
+      p[a] = box.lo[a] +
+             random_uniform(7, 3 * k + static_cast<std::uint64_t>(a)) * (box.hi[a] - box.lo[a]);
+    hash = fnv1a(fmt::format("{:.6f} ", std::round(1e6 * shape->signed_distance(p) / size) / 1e6),
+                 hash);
   }
   Node both = Node::map();
   both.add("given", std::move(out));
@@ -103,13 +113,17 @@ std::optional<PoreBodies> pore_bodies(const Model& model) {
   const double dp = model.resolution;
   take_if([&](std::size_t b) {
     return std::any_of(target.soils().begin(), target.soils().end(),
-                       [&](const WaterTarget::Skeleton& s) { return overlap(shape(b), *s.shape, dp, model.dimension); });
+                       [&](const WaterTarget::Skeleton& s) {
+                         return overlap(shape(b), *s.shape, dp, model.dimension);
+                       });
   });
   if (chosen.empty()) return std::nullopt;
   // A body that touches one of them is no free surface to it.
   while (take_if([&](std::size_t b) {
-    return std::any_of(chosen.begin(), chosen.end(), [&](std::size_t c) { return boxes_meet(shape(b), shape(c), 1e-6 * dp); });
-  })) {}
+    return std::any_of(chosen.begin(), chosen.end(),
+                       [&](std::size_t c) { return boxes_meet(shape(b), shape(c), 1e-6 * dp); });
+  })) {
+  }
   std::sort(chosen.begin(), chosen.end());
   PoreBodies out{chosen, model.bodies[chosen.front()].shape};
   if (chosen.size() > 1) {

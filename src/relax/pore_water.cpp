@@ -17,12 +17,13 @@ namespace {
 
 // A draft of more particles than this stays as it was accepted.
 constexpr Index quick = 30'000;
-// What lies farther than this from soil, in spacings, and from cells that a surface cuts, keeps its place on
-// the lattice: the noise of an accepted cell is gone within one kernel.
+// What lies farther than this from soil, in spacings, and from cells that a surface cuts, keeps its
+// place on the lattice: the noise of an accepted cell is gone within one kernel.
 constexpr double lattice_distance = 6;
 
 /// The number of the body (among `bodies`) that holds a place: its own unless it has left it.
-std::size_t holder(const Model& model, const std::vector<std::size_t>& bodies, std::size_t own, const Vec3& at) {
+std::size_t holder(const Model& model, const std::vector<std::size_t>& bodies, std::size_t own,
+                   const Vec3& at) {
   const auto depth = [&](std::size_t k) { return model.bodies[bodies[k]].shape->bound(at); };
   if (bodies.size() == 1 || depth(own) < 0) return own;
   std::size_t best = own;
@@ -49,12 +50,15 @@ PoreWater fill(const Model& model, const PoreBodies& pores, bool draft) {
   std::vector<Candidate> all;
   std::vector<std::size_t> ends;  // of each body's candidates
   for (const std::size_t b : pores.bodies) {
-    const std::vector<Candidate> some = candidates(*model.bodies[b].shape, target, dp, dim, lattice_distance * dp);
+    const std::vector<Candidate> some =
+        candidates(*model.bodies[b].shape, target, dp, dim, lattice_distance * dp);
     all.insert(all.end(), some.begin(), some.end());
     ends.push_back(all.size());
   }
-  const Acceptance kind = model.relaxation.acceptance == "independent" ? Acceptance::independent : Acceptance::stratified;
-  const std::vector<std::size_t> accepted = accept(all, kind, static_cast<std::uint64_t>(model.relaxation.seed), dp, dim);
+  const Acceptance kind = model.relaxation.acceptance == "independent" ? Acceptance::independent
+                                                                       : Acceptance::stratified;
+  const std::vector<std::size_t> accepted =
+      accept(all, kind, static_cast<std::uint64_t>(model.relaxation.seed), dp, dim);
 
   PoreWater out;
   out.bodies = pores.bodies;
@@ -63,10 +67,12 @@ PoreWater fill(const Model& model, const PoreBodies& pores, bool draft) {
   Seeds seeds;
   std::vector<std::size_t> body;
   for (const std::size_t k : accepted) {
-    const auto own = static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), k) - ends.begin());
+    const auto own =
+        static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), k) - ends.begin());
     const bool relaxed = model.bodies[pores.bodies[own]].filling == "relaxed";
     // A soil of another body may begin right beside this one.
-    const bool fixed = !relaxed && !all[k].near_cut && all[k].water == 1 && target.locate(all[k].at).holds > lattice_distance * dp;
+    const bool fixed = !relaxed && !all[k].near_cut && all[k].water == 1 &&
+                       target.locate(all[k].at).holds > lattice_distance * dp;
     seeds.at.push_back(all[k].at);
     seeds.free.push_back(!fixed);
     out.moved += !fixed;
@@ -109,16 +115,20 @@ std::optional<PoreWater> stored(const Model& model, const PoreBodies& pores, Dia
     found.error("E132", model.place_of(path), path, why, help);
     return std::nullopt;
   };
-  const std::string again = "make it again with 'sphgeo relax', or leave the file out: the deck then relaxes by itself";
+  const std::string again =
+      "make it again with 'sphgeo relax', or leave the file out: the deck then relaxes by itself";
   try {
     const StateFileReader in(relaxed_kind(), file);
-    std::vector<std::string> differences = differing_keys(in.text("depends_on"), depends_on(model, pores));
+    std::vector<std::string> differences =
+        differing_keys(in.text("depends_on"), depends_on(model, pores));
     if (!differences.empty()) {
       constexpr std::size_t most = 6;
       const std::size_t more = differences.size() > most ? differences.size() - most : 0;
       differences.resize(std::min(differences.size(), most));
-      return refuse(fmt::format("the stored water was made for something else: {}{}", fmt::join(differences, "; "),
-                                more ? fmt::format("; and {} more", more) : ""), again);
+      return refuse(
+          fmt::format("the stored water was made for something else: {}{}",
+                      fmt::join(differences, "; "), more ? fmt::format("; and {} more", more) : ""),
+          again);
     }
     return take(in, pores);
   } catch (const IoError& e) {
@@ -130,14 +140,16 @@ std::optional<PoreWater> stored(const Model& model, const PoreBodies& pores, Dia
 
 const std::vector<Vec3>* PoreWater::of_body(std::size_t body) const {
   const auto found = std::find(bodies.begin(), bodies.end(), body);
-  return found == bodies.end() ? nullptr : &particles[static_cast<std::size_t>(found - bodies.begin())];
+  return found == bodies.end() ? nullptr
+                               : &particles[static_cast<std::size_t>(found - bodies.begin())];
 }
 
 std::optional<PoreWater> pore_water(const Model& model, Diagnostics& found, Relaxing how) {
   const std::optional<PoreBodies> pores = pore_bodies(model);
   if (!pores) {
     if (model.relaxation.file)
-      found.warning("W133", model.place_of("relaxation.file"), "relaxation.file", "no water of this deck starts in the pores of soil: the file is not used");
+      found.warning("W133", model.place_of("relaxation.file"), "relaxation.file",
+                    "no water of this deck starts in the pores of soil: the file is not used");
     return std::nullopt;
   }
   if (model.relaxation.file && how != Relaxing::anew) return stored(model, *pores, found);
@@ -189,7 +201,8 @@ void put(const PoreWater& water, const std::string& depends, StateSink& out) {
   out.put("number_density", water.number_density);
   std::vector<double> rows;
   for (const RelaxationStep& s : water.history)
-    rows.insert(rows.end(), {s.density_spread, s.density_mean, s.density_low, s.density_high, s.mean_move, s.largest_move});
+    rows.insert(rows.end(), {s.density_spread, s.density_mean, s.density_low, s.density_high,
+                             s.mean_move, s.largest_move});
   out.put("history", rows, 6);
   out.put_number("volume", water.volume);
   out.put_number("water_density_spread", water.water_density_spread);
@@ -206,7 +219,8 @@ PoreWater take(const StateSource& in, const PoreBodies& pores) {
     std::vector<double> flat(in.size(name));
     in.get(name, flat);
     std::vector<Vec3> at;
-    for (std::size_t k = 0; k + 2 < flat.size(); k += 3) at.emplace_back(flat[k], flat[k + 1], flat[k + 2]);
+    for (std::size_t k = 0; k + 2 < flat.size(); k += 3)
+      at.emplace_back(flat[k], flat[k + 1], flat[k + 2]);
     out.accepted += static_cast<Index>(at.size());
     out.particles.push_back(std::move(at));
   }
@@ -217,7 +231,8 @@ PoreWater take(const StateSource& in, const PoreBodies& pores) {
   std::vector<double> rows(in.size("history"));
   in.get("history", rows);
   for (std::size_t k = 0; k + 5 < rows.size(); k += 6)
-    out.history.push_back({rows[k], rows[k + 1], rows[k + 2], rows[k + 3], rows[k + 4], rows[k + 5]});
+    out.history.push_back(
+        {rows[k], rows[k + 1], rows[k + 2], rows[k + 3], rows[k + 4], rows[k + 5]});
   out.volume = in.number("volume");
   out.water_density_spread = in.number("water_density_spread");
   out.moved = in.count("moved");

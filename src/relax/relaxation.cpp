@@ -20,8 +20,14 @@ constexpr double longest = 0.1;
 template <int Dim>
 class Relaxer {
  public:
-  Relaxer(const Shape& water, const WaterTarget& target, Seeds seeds, double dp, const RelaxationOptions& options)
-      : water_(water), target_(target), dp_(dp), options_(options), r_(std::move(seeds.at)), free_(std::move(seeds.free)) {
+  Relaxer(const Shape& water, const WaterTarget& target, Seeds seeds, double dp,
+          const RelaxationOptions& options)
+      : water_(water),
+        target_(target),
+        dp_(dp),
+        options_(options),
+        r_(std::move(seeds.at)),
+        free_(std::move(seeds.free)) {
     const auto n = static_cast<std::size_t>(count());
     volume_.assign(n, 0);
     fraction_.assign(n, 1);
@@ -42,7 +48,8 @@ class Relaxer {
     });
     Aabb box;
     for (const Index i : moving_) box.extend(at(r_, i));
-    if (!moving_.empty()) smooth_.emplace(water_, target_, box.grown(2 * dp_), dp_, options_.water_h, Dim);
+    if (!moving_.empty())
+      smooth_.emplace(water_, target_, box.grown(2 * dp_), dp_, options_.water_h, Dim);
     parallel_for(count(), [&](Index i) { set_target(i); });
     out.start_density = density_;
     if (!moving_.empty()) {
@@ -98,10 +105,13 @@ class Relaxer {
     missing_.emplace(water_, box.grown(2 * dp_), smoothing_length(1), smoothing_length(low), Dim);
     Aabb all = box;
     for (const Vec3& p : r_) all.extend(p);
-    frame_ = FixedPoint<Dim>::fit(to_scene<Dim>(all.lo - Vec3::Constant(dp_)), to_scene<Dim>(all.hi + Vec3::Constant(dp_)), 2 * largest_h_);
+    frame_ = FixedPoint<Dim>::fit(to_scene<Dim>(all.lo - Vec3::Constant(dp_)),
+                                  to_scene<Dim>(all.hi + Vec3::Constant(dp_)), 2 * largest_h_);
   }
 
-  double smoothing_length(double fraction) const { return options_.h_factor * dp_ * std::pow(fraction, -1.0 / Dim); }
+  double smoothing_length(double fraction) const {
+    return options_.h_factor * dp_ * std::pow(fraction, -1.0 / Dim);
+  }
 
   /// Target volume and spacing, Eqs. 81 and 82. What is not free lies far from all soil.
   void set_target(Index i) {
@@ -119,8 +129,9 @@ class Relaxer {
     grid_.build({places_.data(), places_.size()}, frame_, h);
   }
 
-  /// Number density, and the displacement of Eqs. 84 and 85: with p0 = 1 and the time step of the acceleration
-  /// criterion the factors before the sums make gain h^2, and no way is longer than a tenth of the spacing.
+  /// Number density, and the displacement of Eqs. 84 and 85: with p0 = 1 and the time step of the
+  /// acceleration criterion the factors before the sums make gain h^2, and no way is longer than a
+  /// tenth of the spacing.
   void sum_forces() {
     sort();
     for_moving([&](Index i) {
@@ -158,8 +169,8 @@ class Relaxer {
     });
   }
 
-  /// Surface bounding, Eq. 86. depth_ is an upper limit of the signed distance: it grows with the way
-  /// travelled, and only particles that may have come near the surface ask the shape again.
+  /// Surface bounding, Eq. 86. depth_ is an upper limit of the signed distance: it grows with the
+  /// way travelled, and only particles that may have come near the surface ask the shape again.
   void bound(Index i) {
     if (at(depth_, i) < -0.5 * dp_) return;
     Vec3& p = at(r_, i);
@@ -173,8 +184,8 @@ class Relaxer {
     at(depth_, i) = d;
   }
 
-  /// Free particles whose kernel does not reach the surface; all free ones when there are none. A distance
-  /// may be dear, so that this is not asked at each step.
+  /// Free particles whose kernel does not reach the surface; all free ones when there are none. A
+  /// distance may be dear, so that this is not asked at each step.
   void find_interior() {
     for_moving([&](Index i) {
       if (at(depth_, i) >= -2 * at(h_, i)) at(depth_, i) = water_.signed_distance(at(r_, i));
@@ -187,7 +198,8 @@ class Relaxer {
 
   double mean_way() const {
     const auto n = static_cast<Index>(moving_.size());
-    return ordered_sum(n, [&](Index k) { return at(way_, at(moving_, k)); }) / static_cast<double>(n);
+    return ordered_sum(n, [&](Index k) { return at(way_, at(moving_, k)); }) /
+           static_cast<double>(n);
   }
 
   struct Moments {
@@ -199,7 +211,9 @@ class Relaxer {
       return *this;
     }
     double mean() const { return sum / n; }
-    double spread() const { return std::sqrt(std::max(0.0, square / n - mean() * mean())) / mean(); }
+    double spread() const {
+      return std::sqrt(std::max(0.0, square / n - mean() * mean())) / mean();
+    }
   };
 
   RelaxationStep state() const {
@@ -214,19 +228,25 @@ class Relaxer {
     out.density_low = block_min(n, [&](Index k) { return at(density_, at(inner_, k)); });
     out.density_high = block_max(n, [&](Index k) { return at(density_, at(inner_, k)); });
     out.mean_move = mean_way();
-    out.largest_move = block_max(static_cast<Index>(moving_.size()), [&](Index k) { return at(way_, at(moving_, k)); });
+    out.largest_move = block_max(static_cast<Index>(moving_.size()),
+                                 [&](Index k) { return at(way_, at(moving_, k)); });
     return out;
   }
 
   /// The spread of the density that the kernel of the run sees.
   double water_spread() const {
     const RelaxKernel kernel(options_.water_h, Dim);
-    return ordered_sum(static_cast<Index>(inner_.size()), [&](Index k) {
-             double sum = 0;
-             const Index i = at(inner_, k);
-             grid_.for_each_in_reach(at(places_, i), kernel.support(), [&](Index j, double r2) { sum += kernel.value(std::sqrt(r2)) * at(volume_, j); });
-             return Moments{1, sum, sum * sum};
-           }).spread();
+    return ordered_sum(static_cast<Index>(inner_.size()),
+                       [&](Index k) {
+                         double sum = 0;
+                         const Index i = at(inner_, k);
+                         grid_.for_each_in_reach(
+                             at(places_, i), kernel.support(), [&](Index j, double r2) {
+                               sum += kernel.value(std::sqrt(r2)) * at(volume_, j);
+                             });
+                         return Moments{1, sum, sum * sum};
+                       })
+        .spread();
   }
 
   const Shape& water_;
@@ -250,7 +270,8 @@ class Relaxer {
 
 }  // namespace
 
-RelaxedPositions relax(const Shape& water, const WaterTarget& target, Seeds seeds, double dp, int dim, const RelaxationOptions& options) {
+RelaxedPositions relax(const Shape& water, const WaterTarget& target, Seeds seeds, double dp,
+                       int dim, const RelaxationOptions& options) {
   if (dim == 2) return Relaxer<2>(water, target, std::move(seeds), dp, options).run();
   return Relaxer<3>(water, target, std::move(seeds), dp, options).run();
 }

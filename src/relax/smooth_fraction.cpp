@@ -8,7 +8,9 @@
 
 namespace sphgeo {
 
-SmoothFraction::SmoothFraction(const Shape& water, const WaterTarget& target, const Aabb& box, double dp, double h, int dim) : dp_(dp) {
+SmoothFraction::SmoothFraction(const Shape& water, const WaterTarget& target, const Aabb& box,
+                               double dp, double h, int dim)
+    : dp_(dp) {
   const RelaxKernel kernel(h, dim);
   const auto reach = static_cast<Index>(std::ceil(kernel.support() / dp));
   // One more node than the box, and cells as far around as the kernel reaches.
@@ -20,12 +22,17 @@ SmoothFraction::SmoothFraction(const Shape& water, const WaterTarget& target, co
     origin_[k] = flat ? 0.0 : box.lo[k] - 0.5 * dp;
   }
   const Index margin_y = dim == 2 ? 0 : reach;
-  const Vec3 first = origin_ - dp * Vec3(static_cast<double>(reach), static_cast<double>(margin_y), static_cast<double>(reach));
-  std::vector<double> soil(static_cast<std::size_t>(cells[0] * cells[1] * cells[2])), filled(soil.size());
+  const Vec3 first = origin_ - dp * Vec3(static_cast<double>(reach), static_cast<double>(margin_y),
+                                         static_cast<double>(reach));
+  std::vector<double> soil(static_cast<std::size_t>(cells[0] * cells[1] * cells[2])),
+      filled(soil.size());
   parallel_for(static_cast<Index>(soil.size()), [&](Index c) {
-    const Vec3 at = first + dp * Vec3(static_cast<double>(c % cells[0]), static_cast<double>(c / cells[0] % cells[1]), static_cast<double>(c / (cells[0] * cells[1])));
+    const Vec3 at = first + dp * Vec3(static_cast<double>(c % cells[0]),
+                                      static_cast<double>(c / cells[0] % cells[1]),
+                                      static_cast<double>(c / (cells[0] * cells[1])));
     double nearest = distance_near(water, at, dp);
-    for (const WaterTarget::Skeleton& s : target.soils()) nearest = std::min(nearest, distance_near(*s.shape, at, dp));
+    for (const WaterTarget::Skeleton& s : target.soils())
+      nearest = std::min(nearest, distance_near(*s.shape, at, dp));
     const auto k = static_cast<std::size_t>(c);
     filled[k] = std::clamp(0.5 - nearest / dp, 0.0, 1.0);
     soil[k] = std::clamp(1 - target.mean_fraction(at, dp), 0.0, 1.0);
@@ -50,7 +57,8 @@ SmoothFraction::SmoothFraction(const Shape& water, const WaterTarget& target, co
       sum += weights[k] * soil[there];
       share += weights[k] * filled[there];
     }
-    fraction_[static_cast<std::size_t>(i)] = std::clamp(share > 0 ? 1 - sum / share : 1.0, WaterTarget::smallest, 1.0);
+    fraction_[static_cast<std::size_t>(i)] =
+        std::clamp(share > 0 ? 1 - sum / share : 1.0, WaterTarget::smallest, 1.0);
   });
 }
 
@@ -58,7 +66,9 @@ double SmoothFraction::operator()(const Vec3& at) const {
   Index low[3];
   double part[3];
   for (int k = 0; k < 3; ++k) {
-    const double s = n_[k] == 1 ? 0.0 : std::clamp((at[k] - origin_[k]) / dp_, 0.0, static_cast<double>(n_[k] - 1));
+    const double s =
+        n_[k] == 1 ? 0.0
+                   : std::clamp((at[k] - origin_[k]) / dp_, 0.0, static_cast<double>(n_[k] - 1));
     low[k] = std::min(static_cast<Index>(s), std::max<Index>(n_[k] - 2, 0));
     part[k] = s - static_cast<double>(low[k]);
   }
@@ -71,7 +81,8 @@ double SmoothFraction::operator()(const Vec3& at) const {
       w *= up ? part[k] : 1 - part[k];
       at_corner[k] = std::min(low[k] + up, n_[k] - 1);
     }
-    sum += w * fraction_[static_cast<std::size_t>((at_corner[2] * n_[1] + at_corner[1]) * n_[0] + at_corner[0])];
+    sum += w * fraction_[static_cast<std::size_t>((at_corner[2] * n_[1] + at_corner[1]) * n_[0] +
+                                                  at_corner[0])];
   }
   return sum;
 }

@@ -18,7 +18,8 @@ WaterTarget::WaterTarget(const Model& model) {
     const Body& body = model.bodies[b];
     const auto* soil = dynamic_cast<const Soil*>(model.material(body.material));
     if (!soil || !body.shape) continue;
-    Skeleton s{b, body.shape, body.shape->box(), Expression(soil->volume_fraction.value_or(NAN)), false};
+    Skeleton s{b, body.shape, body.shape->box(), Expression(soil->volume_fraction.value_or(NAN)),
+               false};
     if (body.volume_fraction) s.amount = *body.volume_fraction;
     if (body.porosity) {
       s.amount = *body.porosity;
@@ -38,12 +39,15 @@ WaterTarget::Where WaterTarget::locate(const Vec3& at) const {
   return out;
 }
 
-double WaterTarget::fraction(const Vec3& at) const { return std::min(fraction_in(locate(at).soil, at), 1.0); }
+double WaterTarget::fraction(const Vec3& at) const {
+  return std::min(fraction_in(locate(at).soil, at), 1.0);
+}
 
 double WaterTarget::mean_fraction(const Vec3& at, double edge) const {
   double solid = 0, left = 1;  // what no earlier soil has taken
   for (const Skeleton& s : soils_) {
-    const double share = std::min(left, std::clamp(0.5 - distance_near(*s.shape, at, edge) / edge, 0.0, 1.0));
+    const double share =
+        std::min(left, std::clamp(0.5 - distance_near(*s.shape, at, edge) / edge, 0.0, 1.0));
     if (share == 0) continue;
     solid += share * s.solid(at);
     left -= share;

@@ -96,10 +96,12 @@ std::string AxisScale::text(double tick) const {
   if (axis_.log) {
     const double exponent = std::log10(tick);
     const bool decade = std::abs(exponent - std::round(exponent)) < nearness;
-    if (decade && (tick >= 9999 || tick < 2e-3)) return "10" + raised(static_cast<int>(std::lround(exponent)));
+    if (decade && (tick >= 9999 || tick < 2e-3))
+      return "10" + raised(static_cast<int>(std::lround(exponent)));
     return number_text(tick, 3);
   }
-  const std::string digits = fmt::format("{:.{}f}", std::abs(tick) / std::pow(10.0, power_), decimals_);
+  const std::string digits =
+      fmt::format("{:.{}f}", std::abs(tick) / std::pow(10.0, power_), decimals_);
   const bool zero = digits.find_first_not_of("0.") == std::string::npos;
   return (tick < 0 && !zero ? "−" : "") + digits;
 }

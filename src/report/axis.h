@@ -14,22 +14,24 @@ struct ChartAxis {
   std::optional<double> low, high;  ///< ends of the axis; empty: from the curves
 };
 
-/// Values for the marks of a linear axis from `low` to `high`, both ends inside: multiples of 1, 2 or 5 times
-/// a power of ten, about `most` of them and never more than `most` + 1.
+/// Values for the marks of a linear axis from `low` to `high`, both ends inside: multiples of 1, 2
+/// or 5 times a power of ten, about `most` of them and never more than `most` + 1.
 std::vector<double> linear_ticks(double low, double high, int most = 6);
 
-/// Values for the marks of a logarithmic axis: powers of ten (of a thousand ... when there are many), and 2 and
-/// 5 times them where the axis spans less than two decades.
+/// Values for the marks of a logarithmic axis: powers of ten (of a thousand ... when there are
+/// many), and 2 and 5 times them where the axis spans less than two decades.
 std::vector<double> log_ticks(double low, double high, int most = 7);
 
 /// An axis with its ends: from values to places along it.
 class AxisScale {
  public:
-  /// `low` and `high` are the extremes of the data (any when there is none); ends that the axis itself names win.
-  /// Without them the ends lie a little outside of the data, on zero where that is near.
+  /// `low` and `high` are the extremes of the data (any when there is none); ends that the axis
+  /// itself names win. Without them the ends lie a little outside of the data, on zero where that
+  /// is near.
   AxisScale(const ChartAxis& axis, double low, double high, int most_ticks);
 
-  /// 0 at the low end, 1 at the high end, outside of them beyond; NaN for what the axis cannot show.
+  /// 0 at the low end, 1 at the high end, outside of them beyond; NaN for what the axis cannot
+  /// show.
   double place(double value) const;
   const std::vector<double>& ticks() const { return ticks_; }
   /// The text at a mark; of a linear axis without the power of ten that its title names.

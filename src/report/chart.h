@@ -9,16 +9,17 @@
 
 namespace sphgeo {
 
-/// One curve of a chart. A point that is not finite (or not positive on a logarithmic axis) is a gap.
+/// One curve of a chart. A point that is not finite (or not positive on a logarithmic axis) is a
+/// gap.
 struct ChartCurve {
   std::string name;          ///< in the legend; empty: not there
   std::vector<double> x, y;  ///< equally many
   bool line = true;
   bool markers = false;
   bool dashed = false;
-  bool emphasised = false;  ///< a heavy line, large filled markers
-  bool neutral = false;     ///< in the colour of the text: references, fronts
-  std::optional<int> color = {}; ///< number in the palette; empty: the next one
+  bool emphasised = false;               ///< a heavy line, large filled markers
+  bool neutral = false;                  ///< in the colour of the text: references, fronts
+  std::optional<int> color = {};         ///< number in the palette; empty: the next one
   std::vector<std::string> labels = {};  ///< beside the points; none, or one a point ("" = none)
 };
 
@@ -30,10 +31,10 @@ struct Chart {
   double height = 300;  ///< with axes, without the legend
 };
 
-/// The chart as one <svg> element that scales with its box, uses the colour of the text around it, and the
-/// palette of CSS variables --curve-0 ... --curve-7 where a page defines them. Long curves are thinned to
-/// what can be seen. A chart without a finite point says so. Throws std::invalid_argument when x, y and
-/// labels of a curve differ in length.
+/// The chart as one <svg> element that scales with its box, uses the colour of the text around it,
+/// and the palette of CSS variables --curve-0 ... --curve-7 where a page defines them. Long curves
+/// are thinned to what can be seen. A chart without a finite point says so. Throws
+/// std::invalid_argument when x, y and labels of a curve differ in length.
 std::string chart_svg(const Chart& chart);
 
 }  // namespace sphgeo

@@ -14,12 +14,23 @@ std::string html_escaped(std::string_view text) {
   out.reserve(text.size());
   for (const char c : printable(text, "\n")) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -37,7 +48,8 @@ std::string script_escaped(std::string_view json) {
 }
 
 std::string base64(std::string_view bytes) {
-  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  constexpr std::string_view digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string out;
   out.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
@@ -61,7 +73,9 @@ std::string unit_text(std::string_view unit) {
   std::string out;
   if (unit == "1") return out;
   for (std::size_t i = 0; i < unit.size(); ++i) {
-    const bool power = i > 0 && unit[i] >= '0' && unit[i] <= '9' && ((unit[i - 1] >= 'a' && unit[i - 1] <= 'z') || (unit[i - 1] >= 'A' && unit[i - 1] <= 'Z'));
+    const bool power =
+        i > 0 && unit[i] >= '0' && unit[i] <= '9' &&
+        ((unit[i - 1] >= 'a' && unit[i - 1] <= 'z') || (unit[i - 1] >= 'A' && unit[i - 1] <= 'Z'));
     out += power ? raised(unit[i] - '0') : std::string(1, unit[i]);
   }
   return out;

@@ -13,7 +13,8 @@ WallLines lines_of(const VtuFrame& frame) {
   WallLines walls;
   for (const Vec3& p : frame.points) walls.box.extend(p);
   for (const auto& [a, b] : outline(frame.points, frame.corners_per_cell, frame.corners))
-    walls.lines.emplace_back(frame.points[static_cast<std::size_t>(a)], frame.points[static_cast<std::size_t>(b)]);
+    walls.lines.emplace_back(frame.points[static_cast<std::size_t>(a)],
+                             frame.points[static_cast<std::size_t>(b)]);
   return walls;
 }
 
@@ -33,7 +34,8 @@ Moment MomentReader::load(const RunRecord& run, double time) {
   VtuReading reading;
   reading.wanted = wanted_;
   for (const auto& [set, frames] : run.frames) {
-    const auto frame = std::find_if(frames.begin(), frames.end(), [&](const auto& f) { return f.time == time; });
+    const auto frame =
+        std::find_if(frames.begin(), frames.end(), [&](const auto& f) { return f.time == time; });
     if (frame == frames.end()) continue;
     if (const auto known = walls_.find(frame->file); known != walls_.end()) {
       moment.walls.push_back(&known->second);
@@ -41,7 +43,8 @@ Moment MomentReader::load(const RunRecord& run, double time) {
     }
     try {
       VtuFrame read = read_vtu(frame->file, reading);
-      if (read.corners_per_cell != 1) moment.walls.push_back(&walls_.emplace(frame->file, lines_of(read)).first->second);
+      if (read.corners_per_cell != 1)
+        moment.walls.push_back(&walls_.emplace(frame->file, lines_of(read)).first->second);
       else moment.sets.emplace(set, std::move(read));
     } catch (const Error& e) {
       problems_.insert(e.what());

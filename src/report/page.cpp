@@ -26,8 +26,10 @@ std::string title_of(Runs runs) {
 std::string embedded_summaries(Runs runs) {
   std::string out;
   for (std::size_t k = 0; k < runs.size(); ++k)
-    out += fmt::format("<script type=\"application/json\" id=\"summary{}\">{}</script>\n", k == 0 ? "" : "-" + std::to_string(k + 1),
-                       script_escaped(runs[k].summary.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)));
+    out += fmt::format("<script type=\"application/json\" id=\"summary{}\">{}</script>\n",
+                       k == 0 ? "" : "-" + std::to_string(k + 1),
+                       script_escaped(runs[k].summary.dump(
+                           -1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)));
   return out;
 }
 
@@ -38,11 +40,15 @@ std::string page_head(std::string_view title, std::string_view below, std::strin
   // Nothing may be loaded and nothing run, whatever a deck says.
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; style-src 'unsafe-inline'\">\n"
-      "<meta name=\"generator\" content=\"sphgeo\">\n<title>{}</title>\n<style>\n{}</style>\n</head>\n<body{}>\n<main>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
+      "name=\"color-scheme\" content=\"light dark\">\n"
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
+      "style-src 'unsafe-inline'\">\n"
+      "<meta name=\"generator\" "
+      "content=\"sphgeo\">\n<title>{}</title>\n<style>\n{}</style>\n</head>\n<body{}>\n<main>\n"
       "<header>\n<h1>{}</h1>\n{}</header>\n",
-      text, page_style, body_class.empty() ? "" : fmt::format(" class=\"{}\"", body_class), text, below);
+      text, page_style, body_class.empty() ? "" : fmt::format(" class=\"{}\"", body_class), text,
+      below);
 }
 
 std::string report_page(std::span<const RunRecord> runs) {
@@ -63,8 +69,10 @@ std::string report_page(std::span<const RunRecord> runs) {
   }
   const std::size_t used = page.size() + rest.size() + 40'000;
   const std::size_t room = used < most_page_bytes ? most_page_bytes - used : 0;
-  wishes.most_bytes = std::min(wishes.most_bytes, static_cast<std::size_t>(picture_share * static_cast<double>(room)));
-  if (wishes.most_bytes > 20'000) page += section("Scene", scene_html(runs, paint_runs(runs, wishes)));
+  wishes.most_bytes = std::min(wishes.most_bytes,
+                               static_cast<std::size_t>(picture_share * static_cast<double>(room)));
+  if (wishes.most_bytes > 20'000)
+    page += section("Scene", scene_html(runs, paint_runs(runs, wishes)));
   return page + rest;
 }
 

@@ -1,4 +1,5 @@
-// The sections of a report that are curves: claims against their references, probes, energies, steps.
+// The sections of a report that are curves: claims against their references, probes, energies,
+// steps.
 
 #include <fmt/format.h>
 
@@ -25,13 +26,18 @@ class Charts {
       ++left_out_;
       return;
     }
-    html_ += "<figure>" + chart_svg(chart) + (caption.empty() ? "" : "<figcaption>" + html_escaped(caption) + "</figcaption>") + "</figure>\n";
+    html_ += "<figure>" + chart_svg(chart) +
+             (caption.empty() ? "" : "<figcaption>" + html_escaped(caption) + "</figcaption>") +
+             "</figure>\n";
   }
 
   std::string html() const {
     if (html_.empty()) return {};
     return "<div class=\"charts\">\n" + html_ + "</div>\n" +
-           (left_out_ > 0 ? fmt::format("<p class=\"quiet\">{} further curves are left out; they are in the folder probes.</p>\n", left_out_) : "");
+           (left_out_ > 0 ? fmt::format("<p class=\"quiet\">{} further curves are left out; they "
+                                        "are in the folder probes.</p>\n",
+                                        left_out_)
+                          : "");
   }
 
  private:
@@ -56,15 +62,18 @@ ChartAxis time_axis(Runs runs) {
 constexpr std::string_view support_column = "support";
 
 /// The probe and column that a claim names: "front" or "front.x"; a probe's own name may hold dots.
-std::pair<const TimeSeries*, const NamedColumn*> find_column(const RunRecord& run, const std::string& source) {
-  if (const TimeSeries* whole = run.series(source)) return {whole, whole->columns.empty() ? nullptr : &whole->columns.front()};
+std::pair<const TimeSeries*, const NamedColumn*> find_column(const RunRecord& run,
+                                                             const std::string& source) {
+  if (const TimeSeries* whole = run.series(source))
+    return {whole, whole->columns.empty() ? nullptr : &whole->columns.front()};
   const auto dot = source.rfind('.');
   if (dot == std::string::npos) return {};
   const TimeSeries* series = run.series(source.substr(0, dot));
   return {series, series ? series->find(source.substr(dot + 1)) : nullptr};
 }
 
-/// The reference of a curve, as it is compared. Empty when it cannot be read: the table of claims says why.
+/// The reference of a curve, as it is compared. Empty when it cannot be read: the table of claims
+/// says why.
 std::optional<ChartCurve> reference_curve(const Expect& e) {
   try {
     const CsvTable table = read_csv_table(e.reference_csv->path);
@@ -98,7 +107,11 @@ void add_claims(Runs runs, Charts& charts, std::set<std::string>& shown) {
         if (!column) continue;
         std::string name = column->name;
         std::replace(name.begin(), name.end(), '_', ' ');
-        chart.y.title = raw ? name : e.shift == 0 ? name + " / " + number_text(e.scale) + (column->unit.empty() ? "" : " " + unit_text(column->unit)) : name + ", scaled";
+        chart.y.title = raw ? name
+                        : e.shift == 0
+                            ? name + " / " + number_text(e.scale) +
+                                  (column->unit.empty() ? "" : " " + unit_text(column->unit))
+                            : name + ", scaled";
         chart.y.unit = raw ? column->unit : "";
         ChartCurve curve;
         curve.name = runs.size() > 1 ? run.label : e.probe;
@@ -112,32 +125,40 @@ void add_claims(Runs runs, Charts& charts, std::set<std::string>& shown) {
       shown.insert("claim " + e.name);
       std::string window;
       if (e.from || e.to)
-        window = fmt::format("; compared from {} to {}", e.from ? number_text(*e.from) + " s" : "the start", e.to ? number_text(*e.to) + " s" : "the end");
+        window = fmt::format("; compared from {} to {}",
+                             e.from ? number_text(*e.from) + " s" : "the start",
+                             e.to ? number_text(*e.to) + " s" : "the end");
       charts.add(chart, e.source + window);
     }
   }
 }
 
-/// Of the columns of a probe with this unit at most as many as a chart can tell apart, evenly chosen.
-std::vector<std::string> chosen_columns(const TimeSeries& probe, const std::string& unit, std::size_t& all) {
+/// Of the columns of a probe with this unit at most as many as a chart can tell apart, evenly
+/// chosen.
+std::vector<std::string> chosen_columns(const TimeSeries& probe, const std::string& unit,
+                                        std::size_t& all) {
   constexpr std::size_t most = 6;
   std::vector<std::string> names, chosen;
   for (const NamedColumn& c : probe.columns)
     if (c.unit == unit && c.name != support_column) names.push_back(c.name);
   all = names.size();
-  for (std::size_t k = 0; k < std::min(most, all); ++k) chosen.push_back(names[all <= most ? k : k * (all - 1) / (most - 1)]);
+  for (std::size_t k = 0; k < std::min(most, all); ++k)
+    chosen.push_back(names[all <= most ? k : k * (all - 1) / (most - 1)]);
   return chosen;
 }
 
 /// Columns of one probe that share a unit, in one chart; with several runs a chart a column.
-void add_probe(Runs runs, const std::string& probe, const std::string& unit, std::vector<std::string> columns, std::string caption, Charts& charts) {
+void add_probe(Runs runs, const std::string& probe, const std::string& unit,
+               std::vector<std::string> columns, std::string caption, Charts& charts) {
   // What is zero all the time, where others are not, is said in words.
   const auto zero = [&](const std::string& column) {
     const TimeSeries* series = runs.front().series(probe);
     const NamedColumn* c = series ? series->find(column) : nullptr;
-    return c && std::all_of(c->values.begin(), c->values.end(), [](double v) { return v == 0 || std::isnan(v); });
+    return c && std::all_of(c->values.begin(), c->values.end(),
+                            [](double v) { return v == 0 || std::isnan(v); });
   };
-  const auto first_zero = std::stable_partition(columns.begin(), columns.end(), [&](const std::string& c) { return !zero(c); });
+  const auto first_zero = std::stable_partition(columns.begin(), columns.end(),
+                                                [&](const std::string& c) { return !zero(c); });
   if (first_zero != columns.begin() && first_zero != columns.end()) {
     caption += (caption.empty() ? "zero: " : "; zero: ") + in_words({first_zero, columns.end()});
     columns.erase(first_zero, columns.end());
@@ -167,13 +188,16 @@ void add_probes(Runs runs, Charts& charts) {
   for (const RunRecord& first : runs)
     for (const TimeSeries& probe : first.probes)
       for (const NamedColumn& column : probe.columns) {
-        if (column.name == support_column || !done.emplace(probe.name, column.unit).second) continue;
+        if (column.name == support_column || !done.emplace(probe.name, column.unit).second)
+          continue;
         std::size_t all = 0;
         const std::vector<std::string> columns = chosen_columns(probe, column.unit, all);
-        const std::string caption = columns.size() < all ? fmt::format("{} of {} columns", columns.size(), all) : "";
+        const std::string caption =
+            columns.size() < all ? fmt::format("{} of {} columns", columns.size(), all) : "";
         if (runs.size() == 1) add_probe(runs, probe.name, column.unit, columns, caption, charts);
         else
-          for (const std::string& one : columns) add_probe(runs, probe.name, column.unit, {one}, caption, charts);
+          for (const std::string& one : columns)
+            add_probe(runs, probe.name, column.unit, {one}, caption, charts);
       }
 }
 
@@ -190,7 +214,8 @@ ChartCurve change_of(const TimeSeries& run, const std::string& column, bool sinc
   return curve;
 }
 
-/// Energies of one run; potential energy has no zero of its own, so that all of them count from the start.
+/// Energies of one run; potential energy has no zero of its own, so that all of them count from the
+/// start.
 void add_energies(Runs runs, const RunRecord& run, Charts& charts) {
   const bool several = runs.size() > 1;
   Chart chart;
@@ -213,7 +238,9 @@ void add_energies(Runs runs, const RunRecord& run, Charts& charts) {
   charts.add(chart);
 }
 
-void add_columns(Runs runs, const std::string& title, const std::vector<std::pair<std::string, std::string>>& columns, bool log, Charts& charts) {
+void add_columns(Runs runs, const std::string& title,
+                 const std::vector<std::pair<std::string, std::string>>& columns, bool log,
+                 Charts& charts) {
   Chart chart;
   chart.title = title;
   chart.x = time_axis(runs);
@@ -222,7 +249,9 @@ void add_columns(Runs runs, const std::string& title, const std::vector<std::pai
     for (const auto& [column, name] : columns) {
       ChartCurve curve = change_of(*run.run, column, false);
       if (curve.x.empty()) continue;
-      curve.name = runs.size() > 1 ? (columns.size() > 1 ? run.label + ", " + name : run.label) : columns.size() > 1 ? name : "";
+      curve.name = runs.size() > 1      ? (columns.size() > 1 ? run.label + ", " + name : run.label)
+                   : columns.size() > 1 ? name
+                                        : "";
       chart.y.unit = run.run->find(column)->unit;
       chart.curves.push_back(std::move(curve));
     }
@@ -247,8 +276,10 @@ std::string conservation_html(Runs runs) {
   for (const RunRecord& run : runs)
     if (run.run) add_energies(runs, run, charts);
   add_columns(runs, "largest speed", {{"max_speed", ""}}, false, charts);
-  add_columns(runs, "time step", {{"dt_advection", "advection"}, {"dt_acoustic", "acoustic"}}, true, charts);
-  return ledger_html(runs) + guard_html(runs) + (charts.html().empty() ? "" : "<h3>Over time</h3>\n" + charts.html());
+  add_columns(runs, "time step", {{"dt_advection", "advection"}, {"dt_acoustic", "acoustic"}}, true,
+              charts);
+  return ledger_html(runs) + guard_html(runs) +
+         (charts.html().empty() ? "" : "<h3>Over time</h3>\n" + charts.html());
 }
 
 }  // namespace sphgeo

@@ -1,5 +1,6 @@
 #pragma once
-// The sections of a report, each as HTML; and what sections are made of; for the pages of this program.
+// The sections of a report, each as HTML; and what sections are made of; for the pages of this
+// program.
 
 #include <span>
 #include <string>
@@ -13,14 +14,18 @@ namespace sphgeo {
 using Runs = std::span<const RunRecord>;
 
 /// The page up to its first section: the title (as text) and what stands below it (as HTML).
-std::string page_head(std::string_view title, std::string_view below, std::string_view body_class = {});
+std::string page_head(std::string_view title, std::string_view below,
+                      std::string_view body_class = {});
 /// A table cell. `path` is the JSON pointer of a number that comes from summary.json of run `run`.
-std::string cell(std::string_view html, std::string_view css_class = {}, std::string_view path = {}, std::size_t run = 0);
+std::string cell(std::string_view html, std::string_view css_class = {}, std::string_view path = {},
+                 std::size_t run = 0);
 /// A number as a cell, right-aligned.
-std::string number_cell(std::optional<double> value, std::string_view path = {}, std::size_t run = 0, int digits = 4);
+std::string number_cell(std::optional<double> value, std::string_view path = {},
+                        std::size_t run = 0, int digits = 4);
 /// A heading of a column over `span` columns.
 std::string head_cell(std::string_view html, std::string_view css_class = {}, std::size_t span = 1);
-/// A first row with the names of the runs, each over `each` columns, with so many columns before and after; "" for one run.
+/// A first row with the names of the runs, each over `each` columns, with so many columns before
+/// and after; "" for one run.
 std::string run_heads(Runs runs, std::size_t before, std::size_t each, std::size_t after = 0);
 /// A number (as text) in other text, with where it comes from.
 std::string traced(std::string_view text, std::string_view path, std::size_t run);

@@ -19,11 +19,14 @@ struct Picture {
   std::vector<Color> palette;
   std::vector<std::uint8_t> pixels;  ///< numbers in the palette
 
-  std::uint8_t at(int column, int row) const { return pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)]; }
+  std::uint8_t at(int column, int row) const {
+    return pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                  static_cast<std::size_t>(column)];
+  }
 };
 
-/// The picture as the bytes of a PNG file. Throws std::invalid_argument when it has no pixel, too many colours or a
-/// pixel without a colour.
+/// The picture as the bytes of a PNG file. Throws std::invalid_argument when it has no pixel, too
+/// many colours or a pixel without a colour.
 std::string png(const Picture& picture);
 
 }  // namespace sphgeo

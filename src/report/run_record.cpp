@@ -26,7 +26,10 @@ TimeSeries read_series(const std::string& name, const std::string& path) {
   series.name = name;
   for (const std::string& heading : table.names()) {
     const auto bracket = heading.ends_with(']') ? heading.rfind(" [") : std::string::npos;
-    NamedColumn column{heading.substr(0, bracket), bracket == std::string::npos ? "" : heading.substr(bracket + 2, heading.size() - bracket - 3),
+    NamedColumn column{heading.substr(0, bracket),
+                       bracket == std::string::npos
+                           ? ""
+                           : heading.substr(bracket + 2, heading.size() - bracket - 3),
                        table.numbers(heading)};
     if (&heading == &table.names().front()) series.time = std::move(column.values);
     else series.columns.push_back(std::move(column));
@@ -40,7 +43,9 @@ void attempt(RunRecord& record, const F& read) {
   try {
     read();
   } catch (const DeckError& e) {
-    record.problems.push_back(fmt::format("resolved.yaml cannot be read by this version: {}", e.diagnostics.items().empty() ? "" : e.diagnostics.items().front().message));
+    record.problems.push_back(
+        fmt::format("resolved.yaml cannot be read by this version: {}",
+                    e.diagnostics.items().empty() ? "" : e.diagnostics.items().front().message));
   } catch (const std::exception& e) {
     record.problems.emplace_back(e.what());
   }
@@ -51,15 +56,20 @@ void read_probes(RunRecord& record) {
   std::vector<std::pair<std::string, std::string>> files;  // name, path
   if (record.model) {
     files.emplace_back(relaxation_probe, folder + "/" + relaxation_probe + ".csv");
-    for (const auto& p : record.model->probes) files.emplace_back(p->name, folder + "/" + file_name_of(p->name) + ".csv");
+    for (const auto& p : record.model->probes)
+      files.emplace_back(p->name, folder + "/" + file_name_of(p->name) + ".csv");
   } else {
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(folder, ignored))
-      if (entry.path().extension() == ".csv") files.emplace_back(entry.path().stem().string(), entry.path().string());
+      if (entry.path().extension() == ".csv")
+        files.emplace_back(entry.path().stem().string(), entry.path().string());
     std::sort(files.begin(), files.end());
   }
   for (const auto& [name, path] : files)
-    if (fs::exists(path)) attempt(record, [&, &probe = name, &file = path] { record.probes.push_back(read_series(probe, file)); });
+    if (fs::exists(path))
+      attempt(record, [&, &probe = name, &file = path] {
+        record.probes.push_back(read_series(probe, file));
+      });
 }
 
 void read_frames(RunRecord& record) {
@@ -80,13 +90,15 @@ void read_frames(RunRecord& record) {
 }  // namespace
 
 const NamedColumn* TimeSeries::find(std::string_view column) const {
-  const auto it = std::find_if(columns.begin(), columns.end(), [&](const NamedColumn& c) { return c.name == column; });
+  const auto it = std::find_if(columns.begin(), columns.end(),
+                               [&](const NamedColumn& c) { return c.name == column; });
   return it == columns.end() ? nullptr : &*it;
 }
 
 const TimeSeries* RunRecord::series(const std::string& probe) const {
   if (probe == "run") return run ? &*run : nullptr;
-  const auto it = std::find_if(probes.begin(), probes.end(), [&](const TimeSeries& s) { return s.name == probe; });
+  const auto it = std::find_if(probes.begin(), probes.end(),
+                               [&](const TimeSeries& s) { return s.name == probe; });
   return it == probes.end() ? nullptr : &*it;
 }
 
@@ -94,10 +106,14 @@ RunRecord read_run(const std::string& folder) {
   RunRecord record;
   record.folder = folder;
   record.label = fs::path(folder).lexically_normal().filename().string();
-  if (record.label.empty() || record.label == ".") record.label = fs::absolute(folder).lexically_normal().parent_path().filename().string();
+  if (record.label.empty() || record.label == ".")
+    record.label = fs::absolute(folder).lexically_normal().parent_path().filename().string();
   record.summary = Json::object();
-  const std::string deck = folder + "/resolved.yaml", summary = folder + "/summary.json", rows = folder + "/run.csv";
-  if (!fs::exists(deck) && !fs::exists(summary)) throw IoError(folder, "is no run folder: there is neither summary.json nor resolved.yaml in it");
+  const std::string deck = folder + "/resolved.yaml", summary = folder + "/summary.json",
+                    rows = folder + "/run.csv";
+  if (!fs::exists(deck) && !fs::exists(summary))
+    throw IoError(folder,
+                  "is no run folder: there is neither summary.json nor resolved.yaml in it");
   if (fs::exists(summary)) {
     attempt(record, [&] {
       Json read = Json::parse(read_file(summary, most_text));
@@ -120,14 +136,19 @@ RunRecord read_run(const std::string& folder) {
 std::vector<RunRecord> read_runs(const std::vector<std::string>& folders) {
   std::vector<RunRecord> records;
   for (const std::string& folder : folders) records.push_back(read_run(folder));
-  const auto same = [&](const RunRecord& a) { return std::count_if(records.begin(), records.end(), [&](const RunRecord& b) { return b.label == a.label; }) > 1; };
+  const auto same = [&](const RunRecord& a) {
+    return std::count_if(records.begin(), records.end(),
+                         [&](const RunRecord& b) { return b.label == a.label; }) > 1;
+  };
   std::vector<std::string> labels;
   for (const RunRecord& r : records) labels.push_back(same(r) ? r.folder : r.label);
   for (std::size_t i = 0; i < records.size(); ++i) records[i].label = labels[i];
   return records;
 }
 
-bool is_relaxation(const RunRecord& run) { return value_at(run.summary, "/relaxation").is_object(); }
+bool is_relaxation(const RunRecord& run) {
+  return value_at(run.summary, "/relaxation").is_object();
+}
 
 const Json& value_at(const Json& json, const std::string& pointer) {
   static const Json none;

@@ -24,7 +24,8 @@ struct PictureRow {
   std::string unit;
   double low = 0, high = 1;
   bool clipped = false;  ///< some values lie outside of the range
-  std::vector<std::vector<std::optional<Shot>>> shots;  ///< by run, then by time; empty where a run had ended
+  std::vector<std::vector<std::optional<Shot>>>
+      shots;  ///< by run, then by time; empty where a run had ended
 };
 
 struct ScenePictures {
@@ -36,17 +37,18 @@ struct ScenePictures {
 };
 
 struct PictureWishes {
-  int times = 6;          ///< moments, from the first frame to the last
-  int width = 720;        ///< of a picture at most, pixels
+  int times = 6;                       ///< moments, from the first frame to the last
+  int width = 720;                     ///< of a picture at most, pixels
   std::size_t most_bytes = 1'500'000;  ///< of all PNG files together; they become smaller to fit
 };
 
-/// Paints the frames of runs: speed of everything that moves, pressure of water, plastic strain of soil, von Mises
-/// stress of solids, as far as the frames hold them and they differ from place to place.
+/// Paints the frames of runs: speed of everything that moves, pressure of water, plastic strain of
+/// soil, von Mises stress of solids, as far as the frames hold them and they differ from place to
+/// place.
 ScenePictures paint_runs(std::span<const RunRecord> runs, const PictureWishes& wishes = {});
 
-/// The spacing of particles (m), from the distances of some of them to their nearest neighbours; 0 when there are
-/// fewer than two.
+/// The spacing of particles (m), from the distances of some of them to their nearest neighbours; 0
+/// when there are fewer than two.
 double typical_spacing(std::span<const Vec3> places);
 
 /// In what colour a set is painted that shows no quantity.

@@ -14,8 +14,8 @@
 #include "materials/water.h"
 #include "relax/pore_water.h"
 #include "scene/join_walls.h"
-#include "scene/soil.h"
 #include "scene/skin.h"
+#include "scene/soil.h"
 #include "scene/solid.h"
 #include "scene/wall_corners.h"
 
@@ -33,7 +33,9 @@ namespace {
 
 bool has_water(const Model& model) {
   for (const auto& b : model.boundaries)
-    if (const auto* border = dynamic_cast<const ExchangeBoundary*>(b.get()); border && !border->source_box().empty()) return true;
+    if (const auto* border = dynamic_cast<const ExchangeBoundary*>(b.get());
+        border && !border->source_box().empty())
+      return true;
   return std::any_of(model.bodies.begin(), model.bodies.end(), [&](const Body& b) {
     const MaterialSpec* m = model.material(b.material);
     return m && m->phase() == "water";
@@ -47,7 +49,9 @@ bool only_soil(const Model& model) { return has_soil(model) && !has_water(model)
 
 double support_radius(const Model& model) {
   if (only_soil(model)) return 2 * soil_smoothing_length(model);
-  return 2 * (has_soil(model) ? std::max(water_smoothing_length(model), soil_smoothing_length(model)) : water_smoothing_length(model));
+  return 2 * (has_soil(model)
+                  ? std::max(water_smoothing_length(model), soil_smoothing_length(model))
+                  : water_smoothing_length(model));
 }
 
 BodyPoints fill_body(const Body& body, const Model& model) {
@@ -62,12 +66,14 @@ BodyPoints fill_body(const Body& body, const Model& model) {
   }
   if (n.lattice_jitter > 0) {
     // Bodies of one shape must not be jittered alike.
-    const std::uint64_t seed = random_bits(static_cast<std::uint64_t>(n.lattice_seed), fnv1a(body.name));
+    const std::uint64_t seed =
+        random_bits(static_cast<std::uint64_t>(n.lattice_seed), fnv1a(body.name));
     parallel_for(static_cast<Index>(points.at.size()), [&](Index k) {
       for (int axis = 0; axis < 3; ++axis)
         if (axis != 1 || model.dimension == 3)
           points.at[static_cast<std::size_t>(k)][axis] +=
-              (2 * random_uniform(seed, static_cast<std::uint64_t>(3 * k + axis)) - 1) * n.lattice_jitter * dp;
+              (2 * random_uniform(seed, static_cast<std::uint64_t>(3 * k + axis)) - 1) *
+              n.lattice_jitter * dp;
     });
   }
   return points;
@@ -97,13 +103,16 @@ template <int Dim>
 void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics& found) {
   const Water* water = find_water(model);
   if (!water || !has_water(model)) return;
-  ParticleSet<Dim>& set = scene.world->add_set("water", "water", model.resolution, water_smoothing_length(model), true);
+  ParticleSet<Dim>& set =
+      scene.world->add_set("water", "water", model.resolution, water_smoothing_length(model), true);
   set.set_constant("density", water->density);
   set.set_constant("viscosity", water->viscosity);
   set.set_constant("sound_speed", scene.sound.value);
-  for (const FieldSpec* f : {&fields::mass, &fields::density, &fields::density_rate}) set.require(*f);
+  for (const FieldSpec* f : {&fields::mass, &fields::density, &fields::density_rate})
+    set.require(*f);
   if (fill == Filling::none) return;
-  scene.pore_water = pore_water(model, found, fill == Filling::draft ? Relaxing::draft : Relaxing::as_deck);
+  scene.pore_water =
+      pore_water(model, found, fill == Filling::draft ? Relaxing::draft : Relaxing::as_deck);
   // Water of variable mass (Zhu et al.) stands on its lattice, and its mass follows the porosity.
   std::optional<WaterTarget> share;
   if (model.numerics.pore_water == "variable_mass" && has_soil(model)) share.emplace(model);
@@ -116,14 +125,18 @@ void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
     BodyPoints filling;
     try {
       const std::vector<Vec3>* relaxed = scene.pore_water ? scene.pore_water->of_body(b) : nullptr;
-      filling = relaxed ? BodyPoints{*relaxed, std::pow(model.resolution, Dim)} : fill_body(body, model);
+      filling =
+          relaxed ? BodyPoints{*relaxed, std::pow(model.resolution, Dim)} : fill_body(body, model);
     } catch (const Error& e) {  // without end, or too large to fill
       found.error("E113", model.place_of(path + ".shape"), path + ".shape", e.what());
       continue;
     }
     if (filling.at.empty())
-      found.error("E110", model.place_of(path + ".shape"), path + ".shape", "the body holds no particle",
-                  fmt::format("it is smaller than the resolution of {} m, or lies outside the plane of a 2D scene", model.resolution));
+      found.error(
+          "E110", model.place_of(path + ".shape"), path + ".shape", "the body holds no particle",
+          fmt::format(
+              "it is smaller than the resolution of {} m, or lies outside the plane of a 2D scene",
+              model.resolution));
     const Index first = set.size();
     set.resize(first + static_cast<Index>(filling.at.size()));
     scene.body_particles.emplace_back(body.name, static_cast<Index>(filling.at.size()));
@@ -136,15 +149,24 @@ void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
       set.ids()[i] = static_cast<Id>(i);
       set.tag(fields::part)[i] = static_cast<std::int32_t>(b);
       x[i] = to_scene<Dim>(at);
-      v[i] = to_scene<Dim>(Vec3(body.velocity[0](at, 0), body.velocity[1](at, 0), body.velocity[2](at, 0)));
-      set.scalar(fields::mass)[i] = share ? mass * std::clamp(share->mean_fraction(at, model.resolution), WaterTarget::smallest, 1.0) : mass;
-      set.scalar(fields::density)[i] = water->density + initial_pressure(body, model, water->density, at) / c2;
+      v[i] = to_scene<Dim>(
+          Vec3(body.velocity[0](at, 0), body.velocity[1](at, 0), body.velocity[2](at, 0)));
+      set.scalar(fields::mass)[i] =
+          share ? mass * std::clamp(share->mean_fraction(at, model.resolution),
+                                    WaterTarget::smallest, 1.0)
+                : mass;
+      set.scalar(fields::density)[i] =
+          water->density + initial_pressure(body, model, water->density, at) / c2;
     });
     for (Index i = first; i < set.size(); ++i)
       if (!v[i].allFinite() || !std::isfinite(set.scalar(fields::density)[i])) {
         const Vec3 at = to_space<Dim>(x[i]);
-        found.error("E111", model.place_of(path), path, fmt::format("the initial velocity or pressure is not a number at ({:.4g}, {:.4g}, {:.4g})", at.x(), at.y(), at.z()),
-                    "check the formulas there");
+        found.error(
+            "E111", model.place_of(path), path,
+            fmt::format(
+                "the initial velocity or pressure is not a number at ({:.4g}, {:.4g}, {:.4g})",
+                at.x(), at.y(), at.z()),
+            "check the formulas there");
         break;
       }
   }
@@ -160,15 +182,20 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
   }
   if (!any) return;
   const double dp = model.resolution;
-  // Pairs use the larger smoothing length of both sets. Of one phase alone, that of the walls is no larger than its own.
-  // With water and soil they are that of the larger one: the share of a kernel that lies in walls is asked for at both.
+  // Pairs use the larger smoothing length of both sets. Of one phase alone, that of the walls is no
+  // larger than its own. With water and soil they are that of the larger one: the share of a kernel
+  // that lies in walls is asked for at both.
   const double h = only_soil(model) ? soil_smoothing_length(model)
-                   : has_soil(model) ? std::max(water_smoothing_length(model), soil_smoothing_length(model)) : water_smoothing_length(model);
+                   : has_soil(model)
+                       ? std::max(water_smoothing_length(model), soil_smoothing_length(model))
+                       : water_smoothing_length(model);
   ParticleSet<Dim>& set = scene.world->add_set("walls", "wall", dp, h, moves);
   for (const FieldSpec* f : {&fields::normal, &fields::no_slip}) set.require(*f);
   if (has_soil(model)) set.require(fields::corner);
   if (moves)
-    for (const FieldSpec* f : {&fields::acceleration, &fields::reference_position, &fields::reference_normal}) set.require(*f);
+    for (const FieldSpec* f :
+         {&fields::acceleration, &fields::reference_position, &fields::reference_normal})
+      set.require(*f);
   if (fill == Filling::none) return;
   const Placement placement{dp, support_radius(model), Dim};
   std::vector<WallPart> parts;
@@ -185,7 +212,8 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
     }
   }
   const double g = model.gravity.norm();
-  join_walls<Dim>(parts, dp, support_radius(model), has_soil(model) && g > 0 ? Vec3(-model.gravity / g) : Vec3::Zero());
+  join_walls<Dim>(parts, dp, support_radius(model),
+                  has_soil(model) && g > 0 ? Vec3(-model.gravity / g) : Vec3::Zero());
   if (has_soil(model)) mark_corners<Dim>(parts, dp, support_radius(model));
   for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
     const auto* found_wall = dynamic_cast<const WallBoundary*>(model.boundaries[b].get());
@@ -203,8 +231,10 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
         set.vector(fields::reference_position)[i] = to_scene<Dim>(points[k].position);
         set.vector(fields::reference_normal)[i] = to_scene<Dim>(points[k].normal);
       }
-      set.vector(fields::position)[i] = to_scene<Dim>(wall.motion ? wall.motion->position(points[k].position, 0) : points[k].position);
-      set.vector(fields::normal)[i] = to_scene<Dim>(wall.motion ? wall.motion->direction(points[k].normal, 0) : points[k].normal);
+      set.vector(fields::position)[i] = to_scene<Dim>(
+          wall.motion ? wall.motion->position(points[k].position, 0) : points[k].position);
+      set.vector(fields::normal)[i] = to_scene<Dim>(
+          wall.motion ? wall.motion->direction(points[k].normal, 0) : points[k].normal);
       if (set.has(fields::corner)) set.scalar(fields::corner)[i] = points[k].corner ? 1.0 : 0.0;
       set.scalar(fields::no_slip)[i] = wall.slip_kind() == Slip::no_slip ? 1.0 : 0.0;
     }
@@ -226,7 +256,8 @@ template <int Dim>
 void set_domain(World<Dim>& world, const Model& model) {
   Aabb box = particles_box(world);
   for (const auto& b : model.boundaries)
-    if (const auto* border = dynamic_cast<const ExchangeBoundary*>(b.get())) box.extend(border->source_box());
+    if (const auto* border = dynamic_cast<const ExchangeBoundary*>(b.get()))
+      box.extend(border->source_box());
   if (box.empty()) box = {Vec3::Zero(), Vec3::Zero()};
   // What leaves this box is lost: as much room on every side as the scene is large.
   const double room = std::max((box.hi - box.lo).maxCoeff(), 10 * model.resolution);
@@ -239,7 +270,8 @@ void set_domain(World<Dim>& world, const Model& model) {
 Aabb water_box(const Model& model) {
   Aabb box;
   for (const Body& b : model.bodies)
-    if (const MaterialSpec* m = model.material(b.material); m && m->phase() == "water" && b.shape) box.extend(b.shape->box());
+    if (const MaterialSpec* m = model.material(b.material); m && m->phase() == "water" && b.shape)
+      box.extend(b.shape->box());
   return box;
 }
 
@@ -249,7 +281,8 @@ Aabb scene_box(const Model& model) {
   for (const auto& b : model.boundaries) {
     const auto* wall = dynamic_cast<const WallBoundary*>(b.get());
     const auto solid = wall ? wall->solid(placement) : nullptr;
-    if (solid && solid->box().lo.allFinite()) box.extend(solid->box().lo + Vec3::Constant(placement.thickness));
+    if (solid && solid->box().lo.allFinite())
+      box.extend(solid->box().lo + Vec3::Constant(placement.thickness));
   }
   return box;
 }
@@ -262,7 +295,8 @@ Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling) 
   scene.world = std::make_unique<World<Dim>>(model);
   scene.sound = water_sound_speed(model, water_box(model), scene_box(model));
   if (has_water(model) && !(scene.sound.value > 0)) {
-    found.error("E112", model.place_of("materials"), "materials", "no speed of sound can be estimated: " + scene.sound.because,
+    found.error("E112", model.place_of("materials"), "materials",
+                "no speed of sound can be estimated: " + scene.sound.because,
                 "give max_speed or sound_speed of the water");
     scene.sound.value = 1;
   }

@@ -30,14 +30,15 @@ struct Scene {
   std::optional<PoreWater> pore_water;  ///< how the water in soil was filled, if there is any
 };
 
-/// Whether the sets are filled, or only made: a checkpoint brings its own particles. A draft has the right
-/// number of particles, but much water in soil is not relaxed.
+/// Whether the sets are filled, or only made: a checkpoint brings its own particles. A draft has
+/// the right number of particles, but much water in soil is not relaxed.
 enum class Filling { bodies_and_boundaries, draft, none };
 
 /// Fills bodies, places boundaries, sets the initial state. Findings about the deck that need
 /// particles go to `found`; the model must outlive the world.
 template <int Dim>
-Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling = Filling::bodies_and_boundaries);
+Scene<Dim> build_scene(const Model& model, Diagnostics& found,
+                       Filling filling = Filling::bodies_and_boundaries);
 
 /// c0 of the water: from the deck, or ten times the largest speed to be expected (below Eq. 26).
 SoundSpeed water_sound_speed(const Model& model, const Aabb& water, const Aabb& everything);

@@ -17,11 +17,15 @@
 namespace sphgeo {
 namespace {
 
-std::string point_text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z()); }
+std::string point_text(const Vec3& p) {
+  return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z());
+}
 
-// A body's particle inside the shape of another body of the same phase, or of a solid, deeper than a quarter of the spacing.
+// A body's particle inside the shape of another body of the same phase, or of a solid, deeper than
+// a quarter of the spacing.
 template <int Dim>
-void check_bodies_overlap(const World<Dim>& world, const ParticleSet<Dim>& set, Diagnostics& found) {
+void check_bodies_overlap(const World<Dim>& world, const ParticleSet<Dim>& set,
+                          Diagnostics& found) {
   const Model& model = world.model();
   if (model.bodies.size() < 2) return;
   const auto& x = set.vector(fields::position);
@@ -36,7 +40,8 @@ void check_bodies_overlap(const World<Dim>& world, const ParticleSet<Dim>& set, 
     for (Index i = 0; i < set.size(); ++i) {
       const auto other = static_cast<std::size_t>(part[i]);
       const Vec3 at = to_space<Dim>(x[i]);
-      if ((same && other >= b) || !box.contains(at)) continue;  // two of one phase are compared once
+      if ((same && other >= b) || !box.contains(at))
+        continue;  // two of one phase are compared once
       if (model.bodies[b].shape->signed_distance(at) > -0.25 * set.spacing()) continue;
       if (inside[other]++ == 0) example = at;
     }
@@ -44,14 +49,16 @@ void check_bodies_overlap(const World<Dim>& world, const ParticleSet<Dim>& set, 
       if (inside[other] > 0) {
         const std::string path = fmt::format("bodies[{}].shape", b);
         found.error("E120", model.place_of(path), path,
-                    fmt::format("body '{}' overlaps body '{}': {} particles lie in both, one at {}", model.bodies[b].name,
-                                model.bodies[other].name, inside[other], point_text(example)),
+                    fmt::format("body '{}' overlaps body '{}': {} particles lie in both, one at {}",
+                                model.bodies[b].name, model.bodies[other].name, inside[other],
+                                point_text(example)),
                     "move one of them, or subtract it with a shape of type difference");
       }
   }
 }
 
-// What moves and starts closer to a wall particle than half a spacing starts with a burst. What is clamped does not move.
+// What moves and starts closer to a wall particle than half a spacing starts with a burst. What is
+// clamped does not move.
 template <int Dim>
 void check_in_walls(World<Dim>& world, const ParticleSet<Dim>& set, Diagnostics& found) {
   const ParticleSet<Dim>* walls = world.find("walls");
@@ -59,7 +66,8 @@ void check_in_walls(World<Dim>& world, const ParticleSet<Dim>& set, Diagnostics&
   const Model& model = world.model();
   CellGrid<Dim> grid;
   const auto& y = walls->vector(fields::position);
-  const auto frame = FixedPoint<Dim>::fit(world.domain_lo(), world.domain_hi(), support_radius(model));
+  const auto frame =
+      FixedPoint<Dim>::fit(world.domain_lo(), world.domain_hi(), support_radius(model));
   grid.build({y.data(), static_cast<std::size_t>(y.size())}, frame, model.resolution);
   const auto& x = set.vector(fields::position);
   struct Clash {
@@ -89,20 +97,26 @@ void check_in_walls(World<Dim>& world, const ParticleSet<Dim>& set, Diagnostics&
     const Clash pushed = nearer_than(0.7);
     if (pushed.count == 0) return;
     const std::string path = fmt::format("bodies[{}].shape", pushed.body);
-    found.warning("W134", model.place_of(path), path,
-                  fmt::format("soil starts with a push: {} of its particles lie nearer than 0.7 spacings to a particle of a wall, one of body '{}' at {}, beside boundary '{}'",
-                              pushed.count, model.bodies[static_cast<std::size_t>(pushed.body)].name, point_text(pushed.at),
-                              model.boundaries[static_cast<std::size_t>(pushed.wall)]->name),
-                  "a wall along the lattice, or a start half a spacing away from it, starts at rest");
+    found.warning(
+        "W134", model.place_of(path), path,
+        fmt::format("soil starts with a push: {} of its particles lie nearer than 0.7 spacings to "
+                    "a particle of a wall, one of body '{}' at {}, beside boundary '{}'",
+                    pushed.count, model.bodies[static_cast<std::size_t>(pushed.body)].name,
+                    point_text(pushed.at),
+                    model.boundaries[static_cast<std::size_t>(pushed.wall)]->name),
+        "a wall along the lattice, or a start half a spacing away from it, starts at rest");
     return;
   }
   if (clash.count == 0) return;
   const std::string path = fmt::format("bodies[{}].shape", clash.body);
-  found.error("E121", model.place_of(path), path,
-              fmt::format("body '{}' overlaps boundary '{}': {} of its particles lie in the wall, one at {}",
-                          model.bodies[static_cast<std::size_t>(clash.body)].name,
-                          model.boundaries[static_cast<std::size_t>(clash.wall)]->name, clash.count, point_text(clash.at)),
-              "let the body end at the surface of the wall");
+  found.error(
+      "E121", model.place_of(path), path,
+      fmt::format(
+          "body '{}' overlaps boundary '{}': {} of its particles lie in the wall, one at {}",
+          model.bodies[static_cast<std::size_t>(clash.body)].name,
+          model.boundaries[static_cast<std::size_t>(clash.wall)]->name, clash.count,
+          point_text(clash.at)),
+      "let the body end at the surface of the wall");
 }
 
 template <int Dim>
@@ -118,10 +132,13 @@ void check_lengths(const World<Dim>& world, Diagnostics& found) {
       const double cells = (box.hi[k] - box.lo[k]) / dp;
       if (std::abs(cells - std::round(cells)) < 1e-6 * cells + 1e-6) continue;
       const std::string path = fmt::format("bodies[{}].shape", b);
-      found.warning("W122", model.place_of(path), path,
-                    fmt::format("the length of body '{}' along {} is {:.4g} spacings, no whole number", body.name, "xyz"[k], cells),
-                    fmt::format("the body is filled with {} layers there; a resolution of {:.6g} m would fit", std::floor(cells + 0.5),
-                                (box.hi[k] - box.lo[k]) / std::max(1.0, std::round(cells))));
+      found.warning(
+          "W122", model.place_of(path), path,
+          fmt::format("the length of body '{}' along {} is {:.4g} spacings, no whole number",
+                      body.name, "xyz"[k], cells),
+          fmt::format("the body is filled with {} layers there; a resolution of {:.6g} m would fit",
+                      std::floor(cells + 0.5),
+                      (box.hi[k] - box.lo[k]) / std::max(1.0, std::round(cells))));
     }
   }
 }
@@ -145,16 +162,21 @@ void check_probes(const World<Dim>& world, Diagnostics& found) {
     probe.inspect(model, context);
     for (const Vec3& at : probe.places())
       if (!box.grown(model.resolution).contains(at))
-        found.warning("W123", model.place_of(path + ".at"), path + ".at",
-                      fmt::format("probe '{}' at {} lies outside of everything in the scene", probe.name, point_text(at)),
-                      fmt::format("the scene spans x from {:.4g} to {:.4g} m and z from {:.4g} to {:.4g} m", box.lo.x(), box.hi.x(), box.lo.z(), box.hi.z()));
+        found.warning(
+            "W123", model.place_of(path + ".at"), path + ".at",
+            fmt::format("probe '{}' at {} lies outside of everything in the scene", probe.name,
+                        point_text(at)),
+            fmt::format("the scene spans x from {:.4g} to {:.4g} m and z from {:.4g} to {:.4g} m",
+                        box.lo.x(), box.hi.x(), box.lo.z(), box.hi.z()));
     for (const FieldRequest& r : probe.needs(model))
       if (!world.find(r.set)) {
         std::vector<std::string> names;
         for (const auto& s : world.sets()) names.push_back(s->name());
-        found.error("E124", model.place_of(path), path,
-                    fmt::format("probe '{}' needs the particle set '{}', which this scene does not have", probe.name, r.set),
-                    names.empty() ? "" : "there are: " + fmt::format("{}", fmt::join(names, ", ")));
+        found.error(
+            "E124", model.place_of(path), path,
+            fmt::format("probe '{}' needs the particle set '{}', which this scene does not have",
+                        probe.name, r.set),
+            names.empty() ? "" : "there are: " + fmt::format("{}", fmt::join(names, ", ")));
         break;
       }
   }
@@ -169,7 +191,8 @@ void check_coupling(const World<Dim>& world, Diagnostics& found) {
     const auto* soil = dynamic_cast<const Soil*>(model.materials[k].get());
     if (!soil || soil->drag != "auto" || soil->drag_law() != "none") continue;
     const std::string path = fmt::format("materials[{}]", k);
-    found.warning("W130", model.place_of(path), path, fmt::format("water passes through soil '{}' without drag", soil->name),
+    found.warning("W130", model.place_of(path), path,
+                  fmt::format("water passes through soil '{}' without drag", soil->name),
                   "give grain_size (Ergun) or hydraulic_conductivity (Darcy), or say 'drag: none'");
   }
 }
@@ -186,22 +209,29 @@ void check_switched_off(const Model& model, Diagnostics& found) {
     const std::string path = fmt::format("without[{}]", k);
     if (std::find(can.begin(), can.end(), name) != can.end()) {
       for (const auto& entry : EffectRegistry::all())
-        if (entry.info.name == name) found.warning("W140", model.place_of(path), path, fmt::format("effect '{}' is switched off: {}", name, entry.info.when_off), "");
+        if (entry.info.name == name)
+          found.warning("W140", model.place_of(path), path,
+                        fmt::format("effect '{}' is switched off: {}", name, entry.info.when_off),
+                        "");
     } else if (std::find(all.begin(), all.end(), name) != all.end()) {
-      found.error("E141", model.place_of(path), path, fmt::format("effect '{}' cannot be switched off", name), "these can: " + in_words(can));
+      found.error("E141", model.place_of(path), path,
+                  fmt::format("effect '{}' cannot be switched off", name),
+                  "these can: " + in_words(can));
     } else {
-      found.error("E141", model.place_of(path), path, fmt::format("there is no effect '{}'", name), suggestion(name, can, "effects that can be switched off"));
+      found.error("E141", model.place_of(path), path, fmt::format("there is no effect '{}'", name),
+                  suggestion(name, can, "effects that can be switched off"));
     }
   }
 }
 
-// Measured at CFL numbers up to 1: water at rest, water that hits a ceiling and sand that collapses run at 0.8 and not at 1, a plate that
-// swings at 0.9 and not at 1.
+// Measured at CFL numbers up to 1: water at rest, water that hits a ceiling and sand that collapses
+// run at 0.8 and not at 1, a plate that swings at 0.9 and not at 1.
 void check_steps(const Model& model, Diagnostics& found) {
   const auto warn = [&](const char* key, double value, double holds) {
     if (!(value * model.numerics.time_step_factor > holds)) return;
     const std::string path = fmt::format("numerics.{}", key);
-    found.warning("W136", model.place_of(path), path, fmt::format("runs become unstable when {} is near 1", key),
+    found.warning("W136", model.place_of(path), path,
+                  fmt::format("runs become unstable when {} is near 1", key),
                   fmt::format("most hold at {} or less", holds));
   };
   warn("cfl_acoustic", model.numerics.cfl_acoustic, 0.8);
@@ -210,7 +240,8 @@ void check_steps(const Model& model, Diagnostics& found) {
 
 void check_shapes(const Model& model, Diagnostics& found) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    CheckContext context(found, model.places, fmt::format("bodies[{}].shape", b), model.dimension, model.resolution);
+    CheckContext context(found, model.places, fmt::format("bodies[{}].shape", b), model.dimension,
+                         model.resolution);
     model.bodies[b].shape->inspect(context);
   }
 }

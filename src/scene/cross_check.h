@@ -1,5 +1,6 @@
 #pragma once
-// Rules of a deck that need its particles: overlaps, lengths against the spacing, probes outside, leaks.
+// Rules of a deck that need its particles: overlaps, lengths against the spacing, probes outside,
+// leaks.
 
 #include "scene/build.h"
 

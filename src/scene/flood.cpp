@@ -35,7 +35,8 @@ Vec3 FloodGrid::outer(const Vec3& q) const {
 double FloodGrid::size_of(const FloodFrame& frame) {
   double cells = 1;
   for (int k = 0; k < 3; ++k)
-    if (frame.dimension == 3 || k != 1) cells *= (frame.box.hi[k] - frame.box.lo[k]) / (0.5 * frame.spacing) + 9;
+    if (frame.dimension == 3 || k != 1)
+      cells *= (frame.box.hi[k] - frame.box.lo[k]) / (0.5 * frame.spacing) + 9;
   return cells;
 }
 
@@ -44,7 +45,8 @@ FloodGrid::FloodGrid(const FloodFrame& frame) : frame_(frame), cell_(0.5 * frame
   const Vec3 lo = a.cwiseMin(b), hi = a.cwiseMax(b);
   // Room beyond the solids on all sides: what comes there is outside.
   lo_ = lo.array() - 4 * cell_;
-  for (int k = 0; k < 3; ++k) n_[k] = static_cast<int>(std::ceil((hi[k] - lo[k]) / cell_ - 1e-6)) + 8;
+  for (int k = 0; k < 3; ++k)
+    n_[k] = static_cast<int>(std::ceil((hi[k] - lo[k]) / cell_ - 1e-6)) + 8;
   if (frame.dimension == 2) {
     lo_[1] = -0.5 * cell_;
     n_[1] = 1;
@@ -57,7 +59,8 @@ FloodGrid::FloodGrid(const FloodFrame& frame) : frame_(frame), cell_(0.5 * frame
     const auto in_layer = static_cast<int>(c % layer_);
     const int i = in_layer % n_[0], j = in_layer / n_[0], k = static_cast<int>(c / layer_);
     if (k == n_[2] - 1) state_[c] = solid;  // no flood rises above the liquid's top
-    else if (i == 0 || i == n_[0] - 1 || k == 0 || (n_[1] > 1 && (j == 0 || j == n_[1] - 1))) state_[c] = edge;
+    else if (i == 0 || i == n_[0] - 1 || k == 0 || (n_[1] > 1 && (j == 0 || j == n_[1] - 1)))
+      state_[c] = edge;
   }
 }
 
@@ -80,7 +83,8 @@ void FloodGrid::for_cells(const Vec3& at, double reach, F&& f) const {
   if (n_[1] == 1) first[1] = last[1] = 0;
   for (int k = first[2]; k <= last[2]; ++k)
     for (int j = first[1]; j <= last[1]; ++j)
-      for (int i = first[0]; i <= last[0]; ++i) f(static_cast<Cell>((static_cast<Index>(k) * n_[1] + j) * n_[0] + i));
+      for (int i = first[0]; i <= last[0]; ++i)
+        f(static_cast<Cell>((static_cast<Index>(k) * n_[1] + j) * n_[0] + i));
 }
 
 void FloodGrid::add_solid(const Vec3& at) {
@@ -118,7 +122,8 @@ std::vector<FloodGrid::Cells> FloodGrid::pools() {
     }
     found.push_back(std::move(pool));
   }
-  std::stable_sort(found.begin(), found.end(), [](const Cells& a, const Cells& b) { return a.size() > b.size(); });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Cells& a, const Cells& b) { return a.size() > b.size(); });
   if (found.size() > most_pools) found.resize(most_pools);
   pool_of_.assign(state_.size(), 0);
   for (std::size_t k = 0; k < found.size(); ++k)
@@ -214,7 +219,9 @@ void FloodGrid::measure_clearance() {
   for (std::uint8_t d = 1; d < far && !front.empty(); ++d) {
     next.clear();
     const auto visit = [&](std::int64_t c) {
-      if (c < 0 || c >= static_cast<std::int64_t>(clearance_.size()) || clearance_[static_cast<std::size_t>(c)] != far) return;
+      if (c < 0 || c >= static_cast<std::int64_t>(clearance_.size()) ||
+          clearance_[static_cast<std::size_t>(c)] != far)
+        return;
       clearance_[static_cast<std::size_t>(c)] = d;
       next.push_back(static_cast<Cell>(c));
     };
@@ -267,7 +274,8 @@ std::vector<FloodGrid::Step> FloodGrid::widest_way(const Cells& pool, int top) {
       std::reverse(way.begin(), way.end());
       return way;
     }
-    for (std::size_t k = 0; k < sideways_.size(); ++k) push(at + sideways_[k], static_cast<std::uint8_t>(k + 1));
+    for (std::size_t k = 0; k < sideways_.size(); ++k)
+      push(at + sideways_[k], static_cast<std::uint8_t>(k + 1));
     push(at - layer_, from_above);
     push(at + layer_, from_below);
   }

@@ -19,9 +19,9 @@ struct FloodFrame {
   Aabb box;         ///< of everything that may stop the liquid, cut at the liquid's top, m
 };
 
-/// Cells of half a spacing. A solid particle closes the cells with centres in a cube of 0.73 spacings
-/// half-width around it: layers up to 1.46 spacings apart are tight, and a gap from which one layer
-/// of particles is missing stays open wherever it lies on the grid.
+/// Cells of half a spacing. A solid particle closes the cells with centres in a cube of 0.73
+/// spacings half-width around it: layers up to 1.46 spacings apart are tight, and a gap from which
+/// one layer of particles is missing stays open wherever it lies on the grid.
 class FloodGrid {
  public:
   using Cell = std::uint32_t;
@@ -42,7 +42,8 @@ class FloodGrid {
   /// The liquid, cut into parts that do not touch each other, largest first, at most 200 of them.
   /// Call once, after all of it has been added.
   std::vector<Cells> pools();
-  /// The pool (index into the result of `pools`) within `reach` (m) of a place along the axes, or -1.
+  /// The pool (index into the result of `pools`) within `reach` (m) of a place along the axes, or
+  /// -1.
   int pool_at(const Vec3& p, double reach) const;
 
   /// Whether the pool can reach the outside at all without rising above `top`, a layer.
@@ -78,8 +79,8 @@ class FloodGrid {
   void measure_clearance();
 
   FloodFrame frame_;
-  double cell_;      // width, m
-  Vec3 lo_;          // lower corner in inner axes
+  double cell_;  // width, m
+  Vec3 lo_;      // lower corner in inner axes
   int n_[3];
   std::uint32_t layer_;                 // cells of one layer
   std::vector<std::int64_t> sideways_;  // offsets to the neighbours in the same layer

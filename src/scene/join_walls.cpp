@@ -9,16 +9,18 @@
 
 namespace sphgeo {
 
-bool inside_any(const std::vector<const WallPart*>& parts, const WallPart* but, const Vec3& at, double deeper_than) {
+bool inside_any(const std::vector<const WallPart*>& parts, const WallPart* but, const Vec3& at,
+                double deeper_than) {
   return std::any_of(parts.begin(), parts.end(), [&](const WallPart* other) {
-    return other != but && other->solid->box().contains(at) && other->solid->signed_distance(at) < -deeper_than;
+    return other != but && other->solid->box().contains(at) &&
+           other->solid->signed_distance(at) < -deeper_than;
   });
 }
 
 namespace {
 
-/// Where the ray from a wall particle along its normal leaves its own solid; empty when it does not within
-/// the reach.
+/// Where the ray from a wall particle along its normal leaves its own solid; empty when it does not
+/// within the reach.
 std::optional<Vec3> surface_ahead(const Shape& solid, const WallPoint& p, double dp, double reach) {
   for (double s = 0.25 * dp; s <= reach + dp; s += 0.25 * dp)
     if (const Vec3 at = p.position + s * p.normal; solid.signed_distance(at) > 0) return at;
@@ -59,7 +61,8 @@ void join_walls(std::vector<WallPart>& parts, double dp, double reach, const Vec
       const auto i = static_cast<std::size_t>(k);
       ahead[i] = surface_ahead(*part.solid, part.points[i], dp, reach);
       // Half a spacing further on: a gap that narrow holds no fluid.
-      covered[i] = ahead[i] && inside_any(joined, &part, *ahead[i] + 0.5 * dp * part.points[i].normal, 0);
+      covered[i] =
+          ahead[i] && inside_any(joined, &part, *ahead[i] + 0.5 * dp * part.points[i].normal, 0);
     });
     for (std::size_t i = 0; i < ahead.size(); ++i) {
       if (covered[i]) hidden.push_back(&part.points[i]);
@@ -83,7 +86,8 @@ void join_walls(std::vector<WallPart>& parts, double dp, double reach, const Vec
     double nearest = 4 * reach * reach;
     Index best = -1;
     grid.for_each_in_reach(at, 2 * reach, [&](Index j, double r2) {
-      if (to_scene<Dim>(up).dot(exposed[static_cast<std::size_t>(j)] - at) > 0) r2 -= 0.01 * dp * dp;  // decides between equals
+      if (to_scene<Dim>(up).dot(exposed[static_cast<std::size_t>(j)] - at) > 0)
+        r2 -= 0.01 * dp * dp;  // decides between equals
       if (r2 > nearest || (r2 == nearest && j > best)) return;
       nearest = r2;
       best = j;

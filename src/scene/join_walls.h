@@ -16,14 +16,17 @@ struct WallPart {
 };
 
 /// Whether a place lies deeper in one of the solids, but for that of `but`, than `deeper_than`.
-bool inside_any(const std::vector<const WallPart*>& parts, const WallPart* but, const Vec3& at, double deeper_than);
+bool inside_any(const std::vector<const WallPart*>& parts, const WallPart* but, const Vec3& at,
+                double deeper_than);
 
-/// Of particles where solids overlap, keeps those of the first boundary: a place that is filled twice pulls
-/// twice. Normals that would point into another solid, as at the foot of a step that stands on a floor, are
-/// turned towards the nearest surface that the fluid can reach; spacing dp and reach of the kernel in m. Where two solids touch along
-/// a line, surfaces on both sides of it are equally near: with `up` (of length 1) it is one of the upper side, on which things lie.
+/// Of particles where solids overlap, keeps those of the first boundary: a place that is filled
+/// twice pulls twice. Normals that would point into another solid, as at the foot of a step that
+/// stands on a floor, are turned towards the nearest surface that the fluid can reach; spacing dp
+/// and reach of the kernel in m. Where two solids touch along a line, surfaces on both sides of it
+/// are equally near: with `up` (of length 1) it is one of the upper side, on which things lie.
 template <int Dim>
-void join_walls(std::vector<WallPart>& parts, double dp, double reach, const Vec3& up = Vec3::Zero());
+void join_walls(std::vector<WallPart>& parts, double dp, double reach,
+                const Vec3& up = Vec3::Zero());
 
 extern template void join_walls<2>(std::vector<WallPart>&, double, double, const Vec3&);
 extern template void join_walls<3>(std::vector<WallPart>&, double, double, const Vec3&);

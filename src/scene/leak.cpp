@@ -39,10 +39,12 @@ template <int Dim>
 Parts parts_of(const Scene<Dim>& scene, const Model& model, int up, bool up_is_high) {
   Parts parts;
   for (const auto& s : scene.world->sets()) {
-    if ((s->phase() != "wall" && s->phase() != "solid") || s->name() == "skin") continue;  // the skin is on its solids
+    if ((s->phase() != "wall" && s->phase() != "solid") || s->name() == "skin")
+      continue;  // the skin is on its solids
     const auto& x = s->vector(fields::position);
     const auto& part = s->tag(fields::part);
-    for (Index i = 0; i < s->size(); ++i) parts.solids.push_back({to_space<Dim>(x[i]), s->phase() == "wall" ? part[i] : -1});
+    for (Index i = 0; i < s->size(); ++i)
+      parts.solids.push_back({to_space<Dim>(x[i]), s->phase() == "wall" ? part[i] : -1});
   }
   const Placement placement{model.resolution, support_radius(model), Dim};
   for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
@@ -50,9 +52,11 @@ Parts parts_of(const Scene<Dim>& scene, const Model& model, int up, bool up_is_h
     if (found == nullptr) continue;
     const WallBoundary& wall = *found;
     for (const OpenFace& face : wall.open_faces(placement)) {
-      if (face.axis == up && face.high == up_is_high) continue;  // liquid may come in there, and never leaves
+      if (face.axis == up && face.high == up_is_high)
+        continue;  // liquid may come in there, and never leaves
       for (const Vec3& p : face.points)
-        parts.lids.push_back({wall.motion ? wall.motion->position(p, 0) : p, static_cast<std::int32_t>(b), face.name});
+        parts.lids.push_back({wall.motion ? wall.motion->position(p, 0) : p,
+                              static_cast<std::int32_t>(b), face.name});
     }
   }
   return parts;
@@ -73,8 +77,14 @@ struct Pool {
 /// The floods of one liquid set through one scene.
 class LeakSearch {
  public:
-  LeakSearch(const Model& model, const Parts& parts, const FloodFrame& frame, bool upright, Diagnostics& found)
-      : model_(model), parts_(parts), frame_(frame), upright_(upright), found_(found), grid_(frame) {
+  LeakSearch(const Model& model, const Parts& parts, const FloodFrame& frame, bool upright,
+             Diagnostics& found)
+      : model_(model),
+        parts_(parts),
+        frame_(frame),
+        upright_(upright),
+        found_(found),
+        grid_(frame) {
     Aabb all = frame.box;
     for (const auto& s : parts.solids) all.extend(s.at);
     for (const auto& l : parts.lids) all.extend(l.at);
@@ -105,7 +115,8 @@ class LeakSearch {
       p.at.push_back(liquid[i]);
     }
     for (std::size_t k = 0; k < pools.size(); ++k)
-      if (pools[k].body >= 0 && cells[k].size() >= small_pool * cells[0].size()) judge(pools[k], cells[k]);
+      if (pools[k].body >= 0 && cells[k].size() >= small_pool * cells[0].size())
+        judge(pools[k], cells[k]);
   }
 
  private:
@@ -115,13 +126,19 @@ class LeakSearch {
     for (int a = 0; a < 3; ++a)
       for (const bool high : {false, true}) {
         if (a == frame_.up || (a == 1 && frame_.dimension == 2)) continue;
-        const auto n = std::count_if(pool.at.begin(), pool.at.end(), [&](const Vec3& p) { return shadows_[static_cast<std::size_t>(a)].beyond(p, high); });
+        const auto n = std::count_if(pool.at.begin(), pool.at.end(), [&](const Vec3& p) {
+          return shadows_[static_cast<std::size_t>(a)].beyond(p, high);
+        });
         least = std::min(least, static_cast<double>(n) / static_cast<double>(pool.at.size()));
       }
     return least;
   }
-  bool wall_above(const Vec3& p) const { return shadows_[static_cast<std::size_t>(frame_.up)].beyond(p, frame_.up_is_high); }
-  bool wall_below(const Vec3& p) const { return shadows_[static_cast<std::size_t>(frame_.up)].beyond(p, !frame_.up_is_high); }
+  bool wall_above(const Vec3& p) const {
+    return shadows_[static_cast<std::size_t>(frame_.up)].beyond(p, frame_.up_is_high);
+  }
+  bool wall_below(const Vec3& p) const {
+    return shadows_[static_cast<std::size_t>(frame_.up)].beyond(p, !frame_.up_is_high);
+  }
 
   void judge(const Pool& pool, const FloodGrid::Cells& cells) {
     const double least = enclosed(pool);
@@ -143,12 +160,12 @@ class LeakSearch {
     const std::size_t k = narrowest(way);
     const bool roofed = wall_above(way[k].at);
     if (spill) {
-      // Over a rim, or through a slit open at the top: only when the walls stand all around the pool, so
-      // that a weir or a low wall is not taken for a mistake.
+      // Over a rim, or through a slit open at the top: only when the walls stand all around the
+      // pool, so that a weir or a low wall is not taken for a mistake.
       if (!roofed && !way[k].down && (least < 0.9 || !upright_)) return;
     } else {
-      // It would come to rest inside, but the splash reaches a hole. It is a leak if it falls from there
-      // for good.
+      // It would come to rest inside, but the splash reaches a hole. It is a leak if it falls from
+      // there for good.
       const Vec3& beyond = way[std::min(k + 8, way.size() - 1)].at;
       if (!roofed || wall_below(beyond)) return;
     }
@@ -166,7 +183,8 @@ class LeakSearch {
     return (first + last) / 2;
   }
 
-  // The solid particle nearest to a place, in the largest coordinate as in the grid, and its boundary.
+  // The solid particle nearest to a place, in the largest coordinate as in the grid, and its
+  // boundary.
   std::pair<double, std::int32_t> nearest_solid(const Vec3& at) const {
     double nearest = inf;
     std::int32_t boundary = -1;
@@ -200,17 +218,24 @@ class LeakSearch {
         }
     hole = (hole.array().abs() < 1e-6 * frame_.spacing).select(0.0, hole);
     const Body& body = model_.bodies[static_cast<std::size_t>(pool.body)];
-    const std::string near = boundary < 0 ? "a solid body" : fmt::format("boundary '{}'", model_.boundaries[static_cast<std::size_t>(boundary)]->name);
-    const std::string path = boundary < 0 ? fmt::format("bodies[{}].shape", pool.body) : fmt::format("boundaries[{}]", boundary);
-    found_.warning("W125", model_.place_of(path), path,
-                   fmt::format("body '{}' can run out of its container at {}, through an opening about {:.2g} m ({:.2g} spacings) wide; nearest is {}",
-                               body.name, where(hole, frame_.dimension), std::max(0.0, 2 * nearest - frame_.spacing),
-                               std::max(0.0, 2 * nearest / frame_.spacing - 1), near),
-                   "let the walls there meet or overlap; if the opening is meant, nothing need be done");
+    const std::string near =
+        boundary < 0 ? "a solid body"
+                     : fmt::format("boundary '{}'",
+                                   model_.boundaries[static_cast<std::size_t>(boundary)]->name);
+    const std::string path = boundary < 0 ? fmt::format("bodies[{}].shape", pool.body)
+                                          : fmt::format("boundaries[{}]", boundary);
+    found_.warning(
+        "W125", model_.place_of(path), path,
+        fmt::format("body '{}' can run out of its container at {}, through an opening about {:.2g} "
+                    "m ({:.2g} spacings) wide; nearest is {}",
+                    body.name, where(hole, frame_.dimension),
+                    std::max(0.0, 2 * nearest - frame_.spacing),
+                    std::max(0.0, 2 * nearest / frame_.spacing - 1), near),
+        "let the walls there meet or overlap; if the opening is meant, nothing need be done");
   }
 
-  // A point of an open face that the pool starts at. Pools touch no other pool's cells, so the first
-  // one found near a point is this one or a stranger.
+  // A point of an open face that the pool starts at. Pools touch no other pool's cells, so the
+  // first one found near a point is this one or a stranger.
   const Parts::Lid* touched_lid(int pool) const {
     for (const auto& l : parts_.lids)
       if (grid_.pool_at(l.at, 0.8 * frame_.spacing) == pool) return &l;
@@ -220,10 +245,13 @@ class LeakSearch {
   void note_open_face(const Pool& pool) {
     const Parts::Lid* lid = touched_lid(pool.index);
     const std::string path = fmt::format("boundaries[{}].open", lid->boundary);
-    found_.add({Severity::note, "N126", model_.place_of(path), path,
-                fmt::format("body '{}' starts at the open face '{}' of '{}' and runs out there from the beginning",
-                            model_.bodies[static_cast<std::size_t>(pool.body)].name, lid->face, model_.boundaries[static_cast<std::size_t>(lid->boundary)]->name),
-                ""});
+    found_.add(
+        {Severity::note, "N126", model_.place_of(path), path,
+         fmt::format(
+             "body '{}' starts at the open face '{}' of '{}' and runs out there from the beginning",
+             model_.bodies[static_cast<std::size_t>(pool.body)].name, lid->face,
+             model_.boundaries[static_cast<std::size_t>(lid->boundary)]->name),
+         ""});
   }
 
   const Model& model_;
@@ -267,10 +295,13 @@ void check_leaks(const Scene<Dim>& scene, Diagnostics& found) {
     if (own.empty()) continue;
     FloodFrame here = frame;
     here.box.extend(own);
-    (frame.up_is_high ? here.box.hi : here.box.lo)[frame.up] = (frame.up_is_high ? own.hi : own.lo)[frame.up];
-    if (const double cells = FloodGrid::size_of(here); cells > most_cells) {  // minutes for a check that is only a help
+    (frame.up_is_high ? here.box.hi : here.box.lo)[frame.up] =
+        (frame.up_is_high ? own.hi : own.lo)[frame.up];
+    if (const double cells = FloodGrid::size_of(here);
+        cells > most_cells) {  // minutes for a check that is only a help
       found.add({Severity::note, "N127", model.place_of("resolution"), "resolution",
-                 fmt::format("not checked whether '{}' can run out of its container: that would take {:.2g} cells of half a spacing, and at most {:g} are tried",
+                 fmt::format("not checked whether '{}' can run out of its container: that would "
+                             "take {:.2g} cells of half a spacing, and at most {:g} are tried",
                              s->name(), cells, most_cells),
                  "the check with a coarser --set resolution=... finds gaps that are wide there"});
       continue;

@@ -29,15 +29,19 @@ ParticleCounts expected_particles(const Model& model) {
     const Body& b = model.bodies[k];
     if (const MaterialSpec* m = model.material(b.material); m && b.shape)
       add(counts, m->phase() == "solid" ? solid_set_of(model, k) : m->phase(),
-          shares[k] * estimate_fill(*b.shape, b.spacing.value_or(model.resolution), model.dimension, {}));
+          shares[k] *
+              estimate_fill(*b.shape, b.spacing.value_or(model.resolution), model.dimension, {}));
   }
   if (has_skin(model))
     for (const Body& b : model.bodies)
       if (solid_of(model, b) && b.shape)
-        add(counts, "skin", estimate_layers(*b.shape, b.spacing.value_or(model.resolution), model.dimension, skin_depth(model), LayerSide::inside));
+        add(counts, "skin",
+            estimate_layers(*b.shape, b.spacing.value_or(model.resolution), model.dimension,
+                            skin_depth(model), LayerSide::inside));
   const Placement placement{model.resolution, support_radius(model), model.dimension};
   for (const auto& b : model.boundaries)
-    if (const auto* wall = dynamic_cast<const WallBoundary*>(b.get())) add(counts, "walls", wall->expected_points(placement));
+    if (const auto* wall = dynamic_cast<const WallBoundary*>(b.get()))
+      add(counts, "walls", wall->expected_points(placement));
   return counts;
 }
 
@@ -45,7 +49,8 @@ double entering_particles(const Model& model) {
   double sum = 0;
   for (const auto& b : model.boundaries)
     if (const auto* border = dynamic_cast<const ExchangeBoundary*>(b.get()))
-      sum += border->expected_particles(model.resolution, model.dimension, 0, model.end_time).value_or(0);
+      sum += border->expected_particles(model.resolution, model.dimension, 0, model.end_time)
+                 .value_or(0);
   return sum;
 }
 

@@ -45,7 +45,8 @@ class Shadow {
     for (int k = 0; k < 2; ++k) {
       const int a = across(k);
       const double x = std::floor((at[a] - lo_[a]) / spacing_ + by);
-      p[static_cast<std::size_t>(k)] = static_cast<Index>(std::clamp(x, 0.0, static_cast<double>(n_[k] - 1)));
+      p[static_cast<std::size_t>(k)] =
+          static_cast<Index>(std::clamp(x, 0.0, static_cast<double>(n_[k] - 1)));
     }
     return p;
   }

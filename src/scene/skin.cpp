@@ -9,14 +9,18 @@
 
 namespace sphgeo {
 bool has_skin(const Model& model) {
-  const auto solids = std::count_if(model.bodies.begin(), model.bodies.end(), [&](const Body& b) { return solid_of(model, b) != nullptr; });
-  const bool folds = std::any_of(model.bodies.begin(), model.bodies.end(), [](const Body& b) { return b.self_contact; });
-  return solids > 0 && (solids < std::ssize(model.bodies) || solids > 1 || folds || !model.boundaries.empty());
+  const auto solids = std::count_if(model.bodies.begin(), model.bodies.end(),
+                                    [&](const Body& b) { return solid_of(model, b) != nullptr; });
+  const bool folds = std::any_of(model.bodies.begin(), model.bodies.end(),
+                                 [](const Body& b) { return b.self_contact; });
+  return solids > 0 &&
+         (solids < std::ssize(model.bodies) || solids > 1 || folds || !model.boundaries.empty());
 }
 
 double skin_depth(const Model& model) {
   double depth = support_radius(model);
-  for (const double spacing : solid_spacings(model)) depth = std::max(depth, 2 * model.numerics.h_factor_solid.value_or(1.15) * spacing);
+  for (const double spacing : solid_spacings(model))
+    depth = std::max(depth, 2 * model.numerics.h_factor_solid.value_or(1.15) * spacing);
   return depth;
 }
 
@@ -33,17 +37,20 @@ std::vector<std::shared_ptr<const Shape>> wall_solids(const Model& model, int di
 }
 
 template <int Dim>
-void follow(ParticleSet<Dim>& skin, const ParticleSet<Dim>& solids, std::int32_t number, const Model& model, double depth) {
+void follow(ParticleSet<Dim>& skin, const ParticleSet<Dim>& solids, std::int32_t number,
+            const Model& model, double depth) {
   const auto walls = wall_solids(model, Dim);
   std::vector<Index> near;
   for (Index i = 0; i < solids.size(); ++i) {
     const Body& body = model.bodies[static_cast<std::size_t>(solids.tag(fields::part)[i])];
     const Vec3 at = to_space<Dim>(solids.vector(fields::reference_position)[i]);
     if (body.shape->signed_distance(at) <= -depth) continue;
-    // What is held within a wall, such as the foot of a plate: the wall is there already, and a place that is filled twice
-    // would push twice.
+    // What is held within a wall, such as the foot of a plate: the wall is there already, and a
+    // place that is filled twice would push twice.
     const bool walled = solids.tag(fields::clamp)[i] >= 0 &&
-                        std::any_of(walls.begin(), walls.end(), [&](const auto& wall) { return wall->signed_distance(at) < 0; });
+                        std::any_of(walls.begin(), walls.end(), [&](const auto& wall) {
+                          return wall->signed_distance(at) < 0;
+                        });
     if (!walled) near.push_back(i);
   }
   const Index first = skin.size();
@@ -61,8 +68,11 @@ void follow(ParticleSet<Dim>& skin, const ParticleSet<Dim>& solids, std::int32_t
     // As large as the cell that it keeps water and soil out of.
     skin.scalar(fields::reference_volume)[to] = std::pow(solids.spacing(), Dim);
     skin.scalar(fields::no_slip)[to] = solid_of(model, body)->slip == "no_slip" ? 1 : 0;
-    const Vec3 normal = outward_normal(*body.shape, to_space<Dim>(solids.vector(fields::reference_position)[i]), 0.5 * solids.spacing(), Dim);
-    skin.vector(fields::normal)[to] = skin.vector(fields::reference_normal)[to] = to_scene<Dim>(normal);
+    const Vec3 normal =
+        outward_normal(*body.shape, to_space<Dim>(solids.vector(fields::reference_position)[i]),
+                       0.5 * solids.spacing(), Dim);
+    skin.vector(fields::normal)[to] = skin.vector(fields::reference_normal)[to] =
+        to_scene<Dim>(normal);
   }
 }
 
@@ -78,11 +88,12 @@ void add_skin(Scene<Dim>& scene, const Model& model, Filling filling) {
       h = std::max(h, set->smoothing_length());
       spacing = std::max(spacing, set->spacing());
     }
-  // A quarter more than a kernel: lists of contacts hold for an advection step, in which two bodies may come 0.4 h closer. And what
-  // the contact with walls reaches, 1.5 of their spacings.
-  ParticleSet<Dim>& skin = world.add_set("skin", "wall", spacing, std::max(1.25 * h, 1.6 * model.resolution), true);
-  for (const FieldSpec* f : {&fields::normal, &fields::reference_normal, &fields::no_slip, &fields::source,
-                             &fields::source_set, &fields::reference_volume})
+  // A quarter more than a kernel: lists of contacts hold for an advection step, in which two bodies
+  // may come 0.4 h closer. And what the contact with walls reaches, 1.5 of their spacings.
+  ParticleSet<Dim>& skin =
+      world.add_set("skin", "wall", spacing, std::max(1.25 * h, 1.6 * model.resolution), true);
+  for (const FieldSpec* f : {&fields::normal, &fields::reference_normal, &fields::no_slip,
+                             &fields::source, &fields::source_set, &fields::reference_volume})
     skin.require(*f);
   if (filling == Filling::none) return;
   const double depth = skin_depth(model);

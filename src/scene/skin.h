@@ -11,8 +11,8 @@ bool has_skin(const Model& model);
 /// How deep below the surface of a solid its skin reaches, m.
 double skin_depth(const Model& model);
 
-/// Adds the set "skin" where solids can meet something: a copy of their particles near the surface, which follows them.
-/// It keeps their bodies as `part`, and knows them by set and id.
+/// Adds the set "skin" where solids can meet something: a copy of their particles near the surface,
+/// which follows them. It keeps their bodies as `part`, and knows them by set and id.
 template <int Dim>
 void add_skin(Scene<Dim>& scene, const Model& model, Filling filling);
 

@@ -28,7 +28,8 @@ double mean_fraction(const Body& body, const Soil& soil, const BodyPoints& point
   return points.at.empty() ? 1 : sum / static_cast<double>(points.at.size());
 }
 
-/// Vertical stress by the weight of the soil between a place and the level, Pa, compression negative.
+/// Vertical stress by the weight of the soil between a place and the level, Pa, compression
+/// negative.
 double weight_above(const Body& body, const Soil& soil, const Model& model, const Vec3& at) {
   const double level = body.level.value_or(body.shape->box().hi.z());
   const double height = level - at.z();
@@ -57,11 +58,14 @@ double excess(const Sym3& stress, const DruckerPrager<double>& m) {
   const double s[6] = {stress[0], stress[1], stress[2], stress[3], stress[4], stress[5]};
   const StressInvariants<double> i(s);
   const double reach = m.strength - m.friction * i.first, root = std::sqrt(i.second);
-  return root <= reach ? 0 : (root - reach) / std::max(std::abs(m.friction * i.first) + m.strength, 1e-300);
+  return root <= reach
+             ? 0
+             : (root - reach) / std::max(std::abs(m.friction * i.first) + m.strength, 1e-300);
 }
 
 template <int Dim>
-void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const Soil& soil, const BodyPoints& filling, Diagnostics& found) {
+void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const Soil& soil,
+              const BodyPoints& filling, Diagnostics& found) {
   const Body& body = model.bodies[b];
   const std::string path = fmt::format("bodies[{}]", b);
   const Index first = set.size();
@@ -72,21 +76,30 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
     const Index i = first + static_cast<Index>(k);
     const double n = initial_fraction(body, soil, at);
     const Sym3 stress = initial_stress(body, soil, model, at);
-    const Vec<Dim> v = to_scene<Dim>(Vec3(body.velocity[0](at, 0), body.velocity[1](at, 0), body.velocity[2](at, 0)));
+    const Vec<Dim> v = to_scene<Dim>(
+        Vec3(body.velocity[0](at, 0), body.velocity[1](at, 0), body.velocity[2](at, 0)));
     if (!(n > 0 && n <= 1)) {
-      found.error("E115", model.place_of(path), path, fmt::format("the volume fraction of soil is {} at ({:.4g}, {:.4g}, {:.4g})", n, at.x(), at.y(), at.z()),
-                  "give volume_fraction (above 0, at most 1) of the material or of the body, or the body's porosity");
+      found.error("E115", model.place_of(path), path,
+                  fmt::format("the volume fraction of soil is {} at ({:.4g}, {:.4g}, {:.4g})", n,
+                              at.x(), at.y(), at.z()),
+                  "give volume_fraction (above 0, at most 1) of the material or of the body, or "
+                  "the body's porosity");
       return;
     }
     const double wet = body.saturation(at, 0);
     if (!(wet >= 0 && wet <= 1)) {
       found.error("E116", model.place_of(path + ".saturation"), path + ".saturation",
-                  fmt::format("the degree of saturation is {} at ({:.4g}, {:.4g}, {:.4g})", wet, at.x(), at.y(), at.z()), "it lies between 0 and 1");
+                  fmt::format("the degree of saturation is {} at ({:.4g}, {:.4g}, {:.4g})", wet,
+                              at.x(), at.y(), at.z()),
+                  "it lies between 0 and 1");
       return;
     }
     if (!v.allFinite() || !stress.allFinite()) {
-      found.error("E111", model.place_of(path), path, fmt::format("the initial velocity or stress is not a number at ({:.4g}, {:.4g}, {:.4g})", at.x(), at.y(), at.z()),
-                  "check the formulas there");
+      found.error(
+          "E111", model.place_of(path), path,
+          fmt::format("the initial velocity or stress is not a number at ({:.4g}, {:.4g}, {:.4g})",
+                      at.x(), at.y(), at.z()),
+          "check the formulas there");
       return;
     }
     outside = outside || excess(stress, soil.constants()) > 1e-6;
@@ -102,36 +115,48 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
     if (set.has(fields::saturation)) set.scalar(fields::saturation)[i] = wet;
   }
   if (outside)
-    found.warning("W117", model.place_of(path), path, "the initial stress lies outside of the yield surface in some places",
-                  "the first step brings it back; a larger lateral_stress_ratio or cohesion would keep it");
+    found.warning(
+        "W117", model.place_of(path), path,
+        "the initial stress lies outside of the yield surface in some places",
+        "the first step brings it back; a larger lateral_stress_ratio or cohesion would keep it");
 }
 
 }  // namespace
 
 bool has_soil(const Model& model) {
-  return std::any_of(model.bodies.begin(), model.bodies.end(), [&](const Body& b) { return soil_of(model, b) != nullptr; });
+  return std::any_of(model.bodies.begin(), model.bodies.end(),
+                     [&](const Body& b) { return soil_of(model, b) != nullptr; });
 }
 
 template <int Dim>
 void add_soil(Scene<Dim>& scene, const Model& model, Filling filling, Diagnostics& found) {
   if (!has_soil(model)) return;
-  ParticleSet<Dim>& set = scene.world->add_set("soil", "soil", model.resolution, soil_smoothing_length(model), true);
-  for (const FieldSpec* f : {&fields::mass, &fields::volume_fraction, &fields::volume_fraction_rate, &fields::initial_volume_fraction,
-                             &fields::stress, &fields::gradient_correction, &fields::plastic_strain, &fields::plastic_work})
+  ParticleSet<Dim>& set =
+      scene.world->add_set("soil", "soil", model.resolution, soil_smoothing_length(model), true);
+  for (const FieldSpec* f :
+       {&fields::mass, &fields::volume_fraction, &fields::volume_fraction_rate,
+        &fields::initial_volume_fraction, &fields::stress, &fields::gradient_correction,
+        &fields::plastic_strain, &fields::plastic_work})
     set.require(*f);
   for (const Body& b : model.bodies)
-    if (const Soil* s = soil_of(model, b); s && s->saturated_cohesion) set.require(fields::saturation);
+    if (const Soil* s = soil_of(model, b); s && s->saturated_cohesion)
+      set.require(fields::saturation);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Soil* soil = soil_of(model, model.bodies[b]);
     if (!soil) continue;
-    // Also for a run that goes on from a checkpoint: the density at rest is that of these particles.
+    // Also for a run that goes on from a checkpoint: the density at rest is that of these
+    // particles.
     const BodyPoints points = fill_body(model.bodies[b], model);
-    set.set_constant("density." + std::to_string(b), soil->density * mean_fraction(model.bodies[b], *soil, points));
+    set.set_constant("density." + std::to_string(b),
+                     soil->density * mean_fraction(model.bodies[b], *soil, points));
     if (filling == Filling::none) continue;
     const std::string path = fmt::format("bodies[{}].shape", b);
     if (points.at.empty())
-      found.error("E110", model.place_of(path), path, "the body holds no particle",
-                  fmt::format("it is smaller than the resolution of {} m, or lies outside the plane of a 2D scene", model.resolution));
+      found.error(
+          "E110", model.place_of(path), path, "the body holds no particle",
+          fmt::format(
+              "it is smaller than the resolution of {} m, or lies outside the plane of a 2D scene",
+              model.resolution));
     scene.body_particles.emplace_back(model.bodies[b].name, static_cast<Index>(points.at.size()));
     fill_one(set, model, b, *soil, points, found);
   }

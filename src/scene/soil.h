@@ -19,8 +19,8 @@ BodyPoints fill_body(const Body& body, const Model& model);
 /// Whether a body of soil is in the deck.
 bool has_soil(const Model& model);
 
-/// Adds the set "soil" with all bodies of soil, their mass, volume fraction and initial stress. Findings
-/// that need particles go to `found`. With Filling::none the set is made and stays empty.
+/// Adds the set "soil" with all bodies of soil, their mass, volume fraction and initial stress.
+/// Findings that need particles go to `found`. With Filling::none the set is made and stays empty.
 template <int Dim>
 void add_soil(Scene<Dim>& scene, const Model& model, Filling filling, Diagnostics& found);
 

@@ -17,14 +17,18 @@ std::int32_t clamp_of(const Body& body, const Vec3& at) {
 }
 
 template <int Dim>
-void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const SolidMaterial& solid, const BodyPoints& filling, Diagnostics& found) {
+void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const SolidMaterial& solid,
+              const BodyPoints& filling, Diagnostics& found) {
   const Body& body = model.bodies[b];
   const std::string path = fmt::format("bodies[{}]", b);
   const Index first = set.size();
   set.resize(first + static_cast<Index>(filling.at.size()));
-  // A boulder of a given size has a given weight: what its particles stand for is the shape, not the cells of the lattice.
-  const double volume = body.filling == "lattice" && !filling.at.empty()
-                            ? cut_volume(*body.shape, set.spacing(), Dim) / static_cast<double>(filling.at.size()) : filling.volume;
+  // A boulder of a given size has a given weight: what its particles stand for is the shape, not
+  // the cells of the lattice.
+  const double volume =
+      body.filling == "lattice" && !filling.at.empty()
+          ? cut_volume(*body.shape, set.spacing(), Dim) / static_cast<double>(filling.at.size())
+          : filling.volume;
   std::vector<Index> held(body.clamped.size(), 0);
   for (std::size_t k = 0; k < filling.at.size(); ++k) {
     const Vec3& at = filling.at[k];
@@ -38,8 +42,11 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
       v = motion ? motion->velocity(at, 0) : Vec3::Zero();
     }
     if (!v.allFinite() || !place.allFinite()) {
-      found.error("E111", model.place_of(path), path, fmt::format("the initial velocity or place is not a number at ({:.4g}, {:.4g}, {:.4g})", at.x(), at.y(), at.z()),
-                  "check the formulas there");
+      found.error(
+          "E111", model.place_of(path), path,
+          fmt::format("the initial velocity or place is not a number at ({:.4g}, {:.4g}, {:.4g})",
+                      at.x(), at.y(), at.z()),
+          "check the formulas there");
       return;
     }
     set.ids()[i] = static_cast<Id>(i);
@@ -54,7 +61,8 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
   for (std::size_t k = 0; k < held.size(); ++k)
     if (held[k] == 0) {
       const std::string at = fmt::format("{}.clamped[{}].shape", path, k);
-      found.warning("W118", model.place_of(at), at, fmt::format("the region clamps no particle of body '{}'", body.name),
+      found.warning("W118", model.place_of(at), at,
+                    fmt::format("the region clamps no particle of body '{}'", body.name),
                     "it must overlap the body by half a spacing at least");
     }
 }
@@ -67,12 +75,18 @@ void check_keys(const Model& model, Diagnostics& found) {
     const auto refuse = [&](const char* key, bool given, const char* help) {
       const std::string path = fmt::format("bodies[{}].{}", b, key);
       if (given)
-        found.error("E119", model.place_of(path), path, fmt::format("'{}' has no meaning for body '{}', which is {}", key, body.name,
-                                                                    solid ? "rigid" : "no solid"), help);
+        found.error("E119", model.place_of(path), path,
+                    fmt::format("'{}' has no meaning for body '{}', which is {}", key, body.name,
+                                solid ? "rigid" : "no solid"),
+                    help);
     };
-    if (!solid) refuse("spacing", body.spacing.has_value(), "water and soil have the deck's resolution; give the spacing of solids only");
+    if (!solid)
+      refuse("spacing", body.spacing.has_value(),
+             "water and soil have the deck's resolution; give the spacing of solids only");
     if (!solid || solid->rigid()) {
-      refuse("clamped", !body.clamped.empty(), "a rigid solid that is held is a boundary of type wall; elastic solids can be clamped in part");
+      refuse("clamped", !body.clamped.empty(),
+             "a rigid solid that is held is a boundary of type wall; elastic solids can be clamped "
+             "in part");
       refuse("self_contact", body.self_contact, "only an elastic solid can fold onto itself");
     }
   }
@@ -86,7 +100,8 @@ void add_solids(Scene<Dim>& scene, const Model& model, Filling filling, Diagnost
   const std::vector<double> spacings = solid_spacings(model);
   for (std::size_t k = 0; k < spacings.size(); ++k) {
     const std::string name = solid_set_name(k);
-    ParticleSet<Dim>& set = scene.world->add_solids(name, spacings[k], model.numerics.h_factor_solid.value_or(1.15) * spacings[k]);
+    ParticleSet<Dim>& set = scene.world->add_solids(
+        name, spacings[k], model.numerics.h_factor_solid.value_or(1.15) * spacings[k]);
     for (const FieldSpec* f : {&fields::clamp, &fields::acceleration}) set.require(*f);
     if (filling == Filling::none) continue;
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -95,8 +110,11 @@ void add_solids(Scene<Dim>& scene, const Model& model, Filling filling, Diagnost
       const BodyPoints points = fill_body(model.bodies[b], model);
       const std::string path = fmt::format("bodies[{}].shape", b);
       if (points.at.empty())
-        found.error("E110", model.place_of(path), path, "the body holds no particle",
-                    fmt::format("it is smaller than its spacing of {} m, or lies outside the plane of a 2D scene", spacings[k]));
+        found.error(
+            "E110", model.place_of(path), path, "the body holds no particle",
+            fmt::format(
+                "it is smaller than its spacing of {} m, or lies outside the plane of a 2D scene",
+                spacings[k]));
       scene.body_particles.emplace_back(model.bodies[b].name, static_cast<Index>(points.at.size()));
       fill_one(set, model, b, *solid, points, found);
     }

@@ -5,8 +5,8 @@
 
 namespace sphgeo {
 
-/// Adds a set for every spacing of solids with all bodies of it, and what is clamped of them. Findings that need
-/// particles go to `found`. With Filling::none the sets are made and stay empty.
+/// Adds a set for every spacing of solids with all bodies of it, and what is clamped of them.
+/// Findings that need particles go to `found`. With Filling::none the sets are made and stay empty.
 template <int Dim>
 void add_solids(Scene<Dim>& scene, const Model& model, Filling filling, Diagnostics& found);
 

@@ -15,7 +15,9 @@
 namespace sphgeo {
 namespace {
 
-std::string point_text(const Vec3& p) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z()); }
+std::string point_text(const Vec3& p) {
+  return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", p.x(), p.y(), p.z());
+}
 
 /// A boundary with the solid it was made from.
 struct Solid {
@@ -52,20 +54,29 @@ void check_solid(const Scene<Dim>& scene, const Solid& s, Diagnostics& found) {
   const auto filled = std::find_if(scene.boundary_particles.begin(), scene.boundary_particles.end(),
                                    [&](const auto& p) { return p.first == s.wall->name; });
   // A tank of which front and back alone are closed is nothing in 2D, and need not be anything.
-  const bool across = Dim == 2 && s.wall->open_faces({model.resolution, support_radius(model), 2}).size() == 4;
+  const bool across =
+      Dim == 2 && s.wall->open_faces({model.resolution, support_radius(model), 2}).size() == 4;
   if (filled != scene.boundary_particles.end() && filled->second == 0 && !across)
-    found.error("E143", model.place_of(s.path), s.path, fmt::format("boundary '{}' holds no particle: water passes through it", s.wall->name),
-                fmt::format("make it at least one spacing ({} m) thick, or refine the resolution", model.resolution));
+    found.error(
+        "E143", model.place_of(s.path), s.path,
+        fmt::format("boundary '{}' holds no particle: water passes through it", s.wall->name),
+        fmt::format("make it at least one spacing ({} m) thick, or refine the resolution",
+                    model.resolution));
   if (!s.shape || s.shape->type != "box") return;
   const Aabb box = s.shape->box();
   for (int k = 0; k < 3; ++k) {
     if (k == 1 && Dim == 2) continue;
     const double length = box.hi[k] - box.lo[k], cells = length / model.resolution;
-    if (std::abs(cells - std::round(cells)) < 1e-6 * cells + 1e-6 || std::round(cells) < 1) continue;
-    found.warning("W122", model.place_of(s.path + ".shape"), s.path + ".shape",
-                  fmt::format("the length of boundary '{}' along {} is {:.4g} spacings, no whole number", s.wall->name, "xyz"[k], cells),
-                  fmt::format("its face at {} = {:.6g} m is felt {:.2g} spacings off; a resolution of {:.6g} m would fit", "xyz"[k], box.hi[k],
-                              std::abs(cells - std::floor(cells + 0.5)), length / std::round(cells)));
+    if (std::abs(cells - std::round(cells)) < 1e-6 * cells + 1e-6 || std::round(cells) < 1)
+      continue;
+    found.warning(
+        "W122", model.place_of(s.path + ".shape"), s.path + ".shape",
+        fmt::format("the length of boundary '{}' along {} is {:.4g} spacings, no whole number",
+                    s.wall->name, "xyz"[k], cells),
+        fmt::format("its face at {} = {:.6g} m is felt {:.2g} spacings off; a resolution of {:.6g} "
+                    "m would fit",
+                    "xyz"[k], box.hi[k], std::abs(cells - std::floor(cells + 0.5)),
+                    length / std::round(cells)));
   }
 }
 
@@ -81,7 +92,8 @@ void check_water_in_solid(const World<Dim>& world, const Solid& s, Diagnostics& 
   const double reach = support_radius(model);
   const auto deep = [&](Index i) {
     const Vec3 at = to_space<Dim>(x[i]);
-    return box.contains(at) && s.shape->bound(at) < -0.5 * model.resolution && s.shape->signed_distance(at) < -reach;
+    return box.contains(at) && s.shape->bound(at) < -0.5 * model.resolution &&
+           s.shape->signed_distance(at) < -reach;
   };
   const double count = ordered_sum(water->size(), [&](Index i) { return deep(i) ? 1.0 : 0.0; });
   if (!(count > 0)) return;
@@ -91,10 +103,12 @@ void check_water_in_solid(const World<Dim>& world, const Solid& s, Diagnostics& 
   const std::string path = fmt::format("bodies[{}].shape", body);
   for (const Diagnostic& d : found.items())
     if (d.id == "E121" && d.path == path) return;
-  found.error("E121", model.place_of(path), path,
-              fmt::format("body '{}' overlaps boundary '{}': {:.0f} particles lie deep in the solid, one at {}", model.bodies[body].name, s.wall->name,
-                          count, point_text(to_space<Dim>(x[first]))),
-              "let the body end at the surface of the wall");
+  found.error(
+      "E121", model.place_of(path), path,
+      fmt::format(
+          "body '{}' overlaps boundary '{}': {:.0f} particles lie deep in the solid, one at {}",
+          model.bodies[body].name, s.wall->name, count, point_text(to_space<Dim>(x[first]))),
+      "let the body end at the surface of the wall");
 }
 
 void check_probes(const Model& model, const std::vector<Solid>& solids, Diagnostics& found) {
@@ -107,9 +121,11 @@ void check_probes(const Model& model, const std::vector<Solid>& solids, Diagnost
         // The outermost layer stands half a spacing below the surface: so far a probe may miss it.
         if (depth < 0.5 * model.resolution + 1e-9) continue;
         const std::string path = fmt::format("probes[{}].at", k);
-        found.warning("W128", model.place_of(path), path,
-                      fmt::format("probe '{}' at {} lies inside boundary '{}', {:.3g} m below its surface", probe.name, point_text(at), s.wall->name, depth),
-                      "move it to the surface or into the water");
+        found.warning(
+            "W128", model.place_of(path), path,
+            fmt::format("probe '{}' at {} lies inside boundary '{}', {:.3g} m below its surface",
+                        probe.name, point_text(at), s.wall->name, depth),
+            "move it to the surface or into the water");
         break;
       }
   }
@@ -120,10 +136,12 @@ template <int Dim>
 void check_bodies_held(const World<Dim>& world, Diagnostics& found) {
   const Model& model = world.model();
   const ParticleSet<Dim>*water = world.find("water"), *walls = world.find("walls");
-  if (!water || !walls || walls->size() == 0 || model.body_force || !(model.gravity.norm() > 0)) return;
+  if (!water || !walls || walls->size() == 0 || model.body_force || !(model.gravity.norm() > 0))
+    return;
   int down = 0;
   model.gravity.cwiseAbs().maxCoeff(&down);
-  if (std::abs(model.gravity[down]) < 0.999 * model.gravity.norm() || (Dim == 2 && down == 1)) return;
+  if (std::abs(model.gravity[down]) < 0.999 * model.gravity.norm() || (Dim == 2 && down == 1))
+    return;
   const auto& x = water->vector(fields::position);
   const auto& y = walls->vector(fields::position);
   Aabb all;
@@ -141,8 +159,10 @@ void check_bodies_held(const World<Dim>& world, Diagnostics& found) {
   for (std::size_t b = 0; b < held.size(); ++b) {
     if (!seen[b] || held[b] || moving[b]) continue;
     const std::string path = fmt::format("bodies[{}].shape", b);
-    found.warning("W129", model.place_of(path), path, fmt::format("nothing is below body '{}': it falls out of the scene", model.bodies[b].name),
-                  "move it over a boundary");
+    found.warning(
+        "W129", model.place_of(path), path,
+        fmt::format("nothing is below body '{}': it falls out of the scene", model.bodies[b].name),
+        "move it over a boundary");
   }
 }
 

@@ -14,18 +14,23 @@ struct SurfacePoint {
   Vec3 at, normal;
 };
 
-/// Outward normal of the surface of a solid that is nearest to a place; shorter than 1 where two are equally near.
+/// Outward normal of the surface of a solid that is nearest to a place; shorter than 1 where two
+/// are equally near.
 Vec3 normal_of(const Shape& solid, const Vec3& at, double dp, int dimension) {
   const double by = 1e-3 * dp;
   Vec3 slope = Vec3::Zero();
   for (int k = 0; k < 3; k += dimension == 2 ? 2 : 1)
-    slope[k] = (solid.signed_distance(at + by * Vec3::Unit(k)) - solid.signed_distance(at - by * Vec3::Unit(k))) / (2 * by);
+    slope[k] = (solid.signed_distance(at + by * Vec3::Unit(k)) -
+                solid.signed_distance(at - by * Vec3::Unit(k))) /
+               (2 * by);
   return slope;
 }
 
-/// Points of the surface of these walls that soil can reach: one for each particle of the first layer, and more at an edge. The
-/// normals of particles do not serve here: those that another wall covers have been turned away from their own surface.
-std::vector<SurfacePoint> surface_of(const std::vector<WallPart*>& walls, double dp, int dimension) {
+/// Points of the surface of these walls that soil can reach: one for each particle of the first
+/// layer, and more at an edge. The normals of particles do not serve here: those that another wall
+/// covers have been turned away from their own surface.
+std::vector<SurfacePoint> surface_of(const std::vector<WallPart*>& walls, double dp,
+                                     int dimension) {
   const std::vector<const WallPart*> all(walls.begin(), walls.end());
   std::vector<SurfacePoint> surface;
   for (const WallPart* wall : walls)
@@ -35,9 +40,13 @@ std::vector<SurfacePoint> surface_of(const std::vector<WallPart*>& walls, double
       const auto look_from = [&](const Vec3& place) {
         const Vec3 n = normal_of(*wall->solid, place, dp, dimension);
         if (n.norm() < 0.99) return false;
-        const Vec3 at = p.position + ((place - p.position).dot(n) - wall->solid->signed_distance(place)) * n;
-        const bool known = std::any_of(surface.begin() + static_cast<std::ptrdiff_t>(first), surface.end(), [&](const SurfacePoint& s) { return s.normal.dot(n) > 0.99; });
-        if (!known && !inside_any(all, wall, at + 0.5 * dp * n, 0)) surface.push_back({at, n.normalized()});
+        const Vec3 at =
+            p.position + ((place - p.position).dot(n) - wall->solid->signed_distance(place)) * n;
+        const bool known =
+            std::any_of(surface.begin() + static_cast<std::ptrdiff_t>(first), surface.end(),
+                        [&](const SurfacePoint& s) { return s.normal.dot(n) > 0.99; });
+        if (!known && !inside_any(all, wall, at + 0.5 * dp * n, 0))
+          surface.push_back({at, n.normalized()});
         return true;
       };
       if (look_from(p.position)) continue;
@@ -49,7 +58,8 @@ std::vector<SurfacePoint> surface_of(const std::vector<WallPart*>& walls, double
 
 /// Whether two pieces of surface stand in front of each other, at less than 120 degrees.
 bool enclose(const SurfacePoint& a, const SurfacePoint& b, double dp) {
-  return a.normal.dot(b.normal) < 0.5 && (b.at - a.at).dot(a.normal) > 0.01 * dp && (a.at - b.at).dot(b.normal) > 0.01 * dp;
+  return a.normal.dot(b.normal) < 0.5 && (b.at - a.at).dot(a.normal) > 0.01 * dp &&
+         (a.at - b.at).dot(b.normal) > 0.01 * dp;
 }
 
 template <int Dim>

@@ -16,12 +16,19 @@ class WorldView final : public SceneView {
   const Model& model() const override { return world_.model(); }
   double time() const override { return world_.clock.time; }
   bool has_set(const std::string& set) const override { return world_.find(set) != nullptr; }
-  bool has_field(const std::string& set, const FieldSpec& field) const override { return has_set(set) && world_.set(set).has(field); }
+  bool has_field(const std::string& set, const FieldSpec& field) const override {
+    return has_set(set) && world_.set(set).has(field);
+  }
   Index size(const std::string& set) const override { return world_.set(set).size(); }
   double spacing(const std::string& set) const override { return world_.set(set).spacing(); }
-  double smoothing_length(const std::string& set) const override { return world_.set(set).smoothing_length(); }
-  double constant(const std::string& set, const std::string& key) const override { return world_.set(set).constant(key); }
-  std::function<double(Index)> scalar(const std::string& set, const FieldSpec& field) const override {
+  double smoothing_length(const std::string& set) const override {
+    return world_.set(set).smoothing_length();
+  }
+  double constant(const std::string& set, const std::string& key) const override {
+    return world_.set(set).constant(key);
+  }
+  std::function<double(Index)> scalar(const std::string& set,
+                                      const FieldSpec& field) const override {
     return [&f = world_.set(set).scalar(field)](Index i) { return f[i]; };
   }
   std::function<Vec3(Index)> vector(const std::string& set, const FieldSpec& field) const override {
@@ -30,25 +37,32 @@ class WorldView final : public SceneView {
   std::function<Sym3(Index)> tensor(const std::string& set, const FieldSpec& field) const override {
     return [&f = world_.set(set).tensor(field)](Index i) -> Sym3 { return f[i]; };
   }
-  std::function<std::int32_t(Index)> tag(const std::string& set, const FieldSpec& field) const override {
+  std::function<std::int32_t(Index)> tag(const std::string& set,
+                                         const FieldSpec& field) const override {
     return [&f = world_.set(set).tag(field)](Index i) { return f[i]; };
   }
-  void near(const std::string& set, const Vec3& at, const std::function<void(Index, double)>& f) const override {
+  void near(const std::string& set, const Vec3& at,
+            const std::function<void(Index, double)>& f) const override {
     const ParticleSet<Dim>& s = world_.set(set);
     const Kernel<Dim> kernel(s.smoothing_length());
     const auto& x = s.vector(fields::position);
     const Vec<Dim> point = to_scene<Dim>(at);
     // The grid is as old as the last rearrangement, and the transport displacement came after it.
-    world_.grid(set).for_each_in_reach(point, kernel.support() + 0.5 * s.spacing(), [&](Index i, double) {
-      const double w = kernel.w((x[i] - point).squaredNorm());
-      if (w > 0) f(i, w);
-    });
+    world_.grid(set).for_each_in_reach(point, kernel.support() + 0.5 * s.spacing(),
+                                       [&](Index i, double) {
+                                         const double w = kernel.w((x[i] - point).squaredNorm());
+                                         if (w > 0) f(i, w);
+                                       });
   }
   Crossings crossings(const std::string& boundary) const override {
     const auto at = world_.exchanged().find(boundary);
-    return at == world_.exchanged().end() ? Crossings{} : Crossings{at->second.entered, at->second.left, at->second.mass};
+    return at == world_.exchanged().end()
+               ? Crossings{}
+               : Crossings{at->second.entered, at->second.left, at->second.mass};
   }
-  Aabb domain() const override { return {to_space<Dim>(world_.domain_lo()), to_space<Dim>(world_.domain_hi())}; }
+  Aabb domain() const override {
+    return {to_space<Dim>(world_.domain_lo()), to_space<Dim>(world_.domain_hi())};
+  }
 
  private:
   const World<Dim>& world_;

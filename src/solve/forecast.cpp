@@ -35,22 +35,26 @@ std::vector<MemoryShare> memory_shares(const World<Dim>& world, const Plan<Dim>&
     particles += static_cast<double>(s->size());
   }
   for (const auto& [key, list] : world.lists()) {
-    // Between two sets, pairs grow with the border, which the thinner set follows: walls have a thickness
-    // of a few spacings.
+    // Between two sets, pairs grow with the border, which the thinner set follows: walls have a
+    // thickness of a few spacings.
     const bool across = key.first != key.second && world.set(key.second).phase() == "wall";
     shares.push_back({"list", across ? key.second : key.first, static_cast<double>(list.bytes())});
   }
   for (const MemoryShare& s : shares) accounted += s.bytes;
   // What is left are the records, alike for all particles.
   for (const auto& s : world.sets())
-    if (particles > 0) shares.push_back({"records", s->name(), std::max(0.0, total - accounted) * static_cast<double>(s->size()) / particles});
+    if (particles > 0)
+      shares.push_back(
+          {"records", s->name(),
+           std::max(0.0, total - accounted) * static_cast<double>(s->size()) / particles});
   double scratch = 0;
   for (const auto& e : plan.effects()) scratch += static_cast<double>(e.effect->bytes());
   shares.push_back({"scratch", main_set(world), scratch});
   return shares;
 }
 
-double bytes_at(const std::vector<MemoryShare>& shares, const ParticleCounts& from, const ParticleCounts& to) {
+double bytes_at(const std::vector<MemoryShare>& shares, const ParticleCounts& from,
+                const ParticleCounts& to) {
   double sum = 0;
   for (const MemoryShare& s : shares) {
     const double before = count_of(from, s.set);
@@ -72,7 +76,9 @@ double typical_speed(const World<Dim>& world, const SoundSpeed& sound) {
   for (const auto& s : world.sets())
     if (s->phase() != "wall") {
       const auto& v = s->vector(fields::velocity);
-      initial = std::max(initial, std::sqrt(block_max(s->size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0)));
+      initial =
+          std::max(initial, std::sqrt(block_max(
+                                s->size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0)));
     }
   return std::max(initial, 0.5 * sound.max_speed);
 }
@@ -89,12 +95,14 @@ StepCounts expected_steps(World<Dim>& world, const Plan<Dim>& plan, double speed
     v[0][0] = speed;
   }
   const StepLimits limits = plan.limits();
-  for (std::size_t k = 0; k < kept.size(); ++k) std::copy(kept[k].begin(), kept[k].end(), world.sets()[k]->vector(fields::velocity).data());
+  for (std::size_t k = 0; k < kept.size(); ++k)
+    std::copy(kept[k].begin(), kept[k].end(), world.sets()[k]->vector(fields::velocity).data());
 
   if (!std::isfinite(limits.advection) || !(limits.advection > 0)) return {};
   const double advection = std::ceil(duration / limits.advection - 1e-9);
   // As the stepper divides an advection step.
-  return {advection, advection * std::max(1.0, std::ceil(limits.advection / limits.acoustic - 1e-9))};
+  return {advection,
+          advection * std::max(1.0, std::ceil(limits.advection / limits.acoustic - 1e-9))};
 }
 
 template <int Dim>
@@ -131,17 +139,21 @@ std::optional<StepCost> StepTimer<Dim>::cost() const {
     acoustic += samples_[k].acoustic_steps;
   }
   if (acoustic == 0) return std::nullopt;
-  return StepCost{between / static_cast<double>(samples_.size() - 1), (all - between) / static_cast<double>(acoustic)};
+  return StepCost{between / static_cast<double>(samples_.size() - 1),
+                  (all - between) / static_cast<double>(acoustic)};
 }
 
 template <int Dim>
-std::optional<StepCost> calibrate(World<Dim>& world, Plan<Dim>& plan, double seconds, double most_steps) {
+std::optional<StepCost> calibrate(World<Dim>& world, Plan<Dim>& plan, double seconds,
+                                  double most_steps) {
   Stepper<Dim> stepper(world, plan);
   StepTimer<Dim> timer(world, plan, stepper);
   RunHooks hooks;
   hooks.at_safe_point = [&] {
     timer.end();
-    if (timer.steps() >= 3 && (static_cast<double>(timer.steps()) >= most_steps || timer.seconds() >= seconds)) return false;
+    if (timer.steps() >= 3 &&
+        (static_cast<double>(timer.steps()) >= most_steps || timer.seconds() >= seconds))
+      return false;
     timer.begin();
     return true;
   };

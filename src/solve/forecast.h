@@ -1,6 +1,6 @@
 #pragma once
-// What a run will cost: memory by what it grows with, the number of steps, and the time of a step measured
-// on the run's own particles. No guess needs the results.
+// What a run will cost: memory by what it grows with, the number of steps, and the time of a step
+// measured on the run's own particles. No guess needs the results.
 
 #include <chrono>
 #include <optional>
@@ -19,13 +19,14 @@ struct MemoryShare {
   double bytes;
 };
 
-/// Fields, records, grids, neighbor lists and the scratch of effects, as they are allocated now; complete
-/// after a rearrangement.
+/// Fields, records, grids, neighbor lists and the scratch of effects, as they are allocated now;
+/// complete after a rearrangement.
 template <int Dim>
 std::vector<MemoryShare> memory_shares(const World<Dim>& world, const Plan<Dim>& plan);
 
 /// Their sum in a scene of `to` particles when they were taken in one of `from`.
-double bytes_at(const std::vector<MemoryShare>& shares, const ParticleCounts& from, const ParticleCounts& to);
+double bytes_at(const std::vector<MemoryShare>& shares, const ParticleCounts& from,
+                const ParticleCounts& to);
 
 /// Particles of each set, now.
 template <int Dim>
@@ -39,8 +40,9 @@ struct StepCounts {
 template <int Dim>
 double typical_speed(const World<Dim>& world, const SoundSpeed& sound);
 
-/// Steps of both clocks through `duration` (s) when the fastest particle of every set moves at `speed`
-/// (m/s): the bounds are those of the plan itself. The world is left as it was, bit for bit.
+/// Steps of both clocks through `duration` (s) when the fastest particle of every set moves at
+/// `speed` (m/s): the bounds are those of the plan itself. The world is left as it was, bit for
+/// bit.
 template <int Dim>
 StepCounts expected_steps(World<Dim>& world, const Plan<Dim>& plan, double speed, double duration);
 
@@ -51,8 +53,8 @@ struct StepCost {
   double of(const StepCounts& n) const { return n.advection * advection + n.acoustic * acoustic; }
 };
 
-/// Times advection steps from outside. The first one is left out, as it meets cold memory; of the others the
-/// mean counts, which on a busy machine holds the waiting that a run would meet too.
+/// Times advection steps from outside. The first one is left out, as it meets cold memory; of the
+/// others the mean counts, which on a busy machine holds the waiting that a run would meet too.
 template <int Dim>
 class StepTimer {
  public:
@@ -87,8 +89,10 @@ class StepTimer {
   std::vector<Sample> samples_;
 };
 
-/// Real steps of the plan for about `seconds`, at most `most_steps` but at least 3. Moves the world on.
+/// Real steps of the plan for about `seconds`, at most `most_steps` but at least 3. Moves the world
+/// on.
 template <int Dim>
-std::optional<StepCost> calibrate(World<Dim>& world, Plan<Dim>& plan, double seconds, double most_steps);
+std::optional<StepCost> calibrate(World<Dim>& world, Plan<Dim>& plan, double seconds,
+                                  double most_steps);
 
 }  // namespace sphgeo

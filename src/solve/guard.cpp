@@ -16,7 +16,9 @@ namespace {
 class Stopwatch {
  public:
   explicit Stopwatch(double& seconds) : seconds_(seconds) {}
-  ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  ~Stopwatch() {
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+  }
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
 
@@ -34,7 +36,8 @@ struct Extremes {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   bool odd = false;
   Extremes() = default;
-  // Without a branch or a dependence from one value to the next, so that it vectorizes; 0 v is 0 for every number only.
+  // Without a branch or a dependence from one value to the next, so that it vectorizes; 0 v is 0
+  // for every number only.
   explicit Extremes(std::span<const double> values) {
     double least = low, most = high, zero = 0;
 #pragma omp simd reduction(min : least) reduction(max : most) reduction(+ : zero)
@@ -59,8 +62,11 @@ struct Extremes {
 
 template <int Dim>
 Guard<Dim>::Guard(const World<Dim>& world, const Plan<Dim>& plan)
-    : world_(world), plan_(plan), bounds_(plan.bounds()),
-      seen_(bounds_.size(), {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()}) {
+    : world_(world),
+      plan_(plan),
+      bounds_(plan.bounds()),
+      seen_(bounds_.size(),
+            {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()}) {
   for (const auto& s : world.sets()) initial_[s->name()] = s->size();
 }
 
@@ -68,20 +74,26 @@ template <int Dim>
 void Guard<Dim>::before_step(const StepLimits& limits, double dt) {
   check_speed(limits);
   largest_dt_ = std::max(largest_dt_, dt);
-  if (!(dt > collapsed * largest_dt_) || !(world_.clock.time + dt > world_.clock.time)) stop_collapsed("acoustic", dt, largest_dt_, limits);
-  // As many solid steps as it takes go into an acoustic one: without this, a force without bound would never let go of it.
+  if (!(dt > collapsed * largest_dt_) || !(world_.clock.time + dt > world_.clock.time))
+    stop_collapsed("acoustic", dt, largest_dt_, limits);
+  // As many solid steps as it takes go into an acoustic one: without this, a force without bound
+  // would never let go of it.
   if (limits.solid == std::numeric_limits<double>::infinity()) return;
   if (std::isfinite(limits.solid)) largest_solid_ = std::max(largest_solid_, limits.solid);
-  if (!(limits.solid > collapsed * largest_solid_)) stop_collapsed("solid", limits.solid, largest_solid_, limits);
+  if (!(limits.solid > collapsed * largest_solid_))
+    stop_collapsed("solid", limits.solid, largest_solid_, limits);
 }
 
 template <int Dim>
-void Guard<Dim>::stop_collapsed(const char* which, double dt, double before, const StepLimits& limits) {
+void Guard<Dim>::stop_collapsed(const char* which, double dt, double before,
+                                const StepLimits& limits) {
   check_fields(true);  // names the field that went wrong, if one did
-  throw UnstableError(fmt::format("the {} step collapsed to {:.3g} s at t = {:.6g} s, from {:.3g} s before; the fastest particle "
-                                  "of set '{}' moves at {:.3g} times the speed of sound",
-                                  which, dt, world_.clock.time, before, limits.fastest, limits.mach),
-                      {"step", "", limits.fastest, {}, {}, world_.clock.time});
+  throw UnstableError(
+      fmt::format("the {} step collapsed to {:.3g} s at t = {:.6g} s, from {:.3g} s before; the "
+                  "fastest particle "
+                  "of set '{}' moves at {:.3g} times the speed of sound",
+                  which, dt, world_.clock.time, before, limits.fastest, limits.mach),
+      {"step", "", limits.fastest, {}, {}, world_.clock.time});
 }
 
 template <int Dim>
@@ -102,10 +114,15 @@ void Guard<Dim>::check_speed(const StepLimits& limits) {
   }
   if (odd > 0) check_fields(true);  // names the field that went wrong first, if another one did
   if (odd > 0)
-    stop("not_finite", set, fields::velocity, first_odd, fmt::format("the velocity of {} particle{} is not finite, first of", odd, odd == 1 ? "" : "s"), "");
+    stop("not_finite", set, fields::velocity, first_odd,
+         fmt::format("the velocity of {} particle{} is not finite, first of", odd,
+                     odd == 1 ? "" : "s"),
+         "");
   stop("speed", set, fields::velocity, fastest,
-       fmt::format("with {:.4g} m/s, {:.3g} times its speed of sound, the fastest is", v[fastest].norm(), limits.mach),
-       "a larger sound_speed or max_speed of the material, or a start closer to equilibrium, may help");
+       fmt::format("with {:.4g} m/s, {:.3g} times its speed of sound, the fastest is",
+                   v[fastest].norm(), limits.mach),
+       "a larger sound_speed or max_speed of the material, or a start closer to equilibrium, may "
+       "help");
 }
 
 template <int Dim>
@@ -124,10 +141,12 @@ void Guard<Dim>::check_all() {
   const Stopwatch watch(seconds_);
   check_speed(plan_.limits());
   check_fields(true);
-  check_bounds(false);  // extremes belong to whole steps: where a run is saved must not show in them
+  check_bounds(
+      false);  // extremes belong to whole steps: where a run is saved must not show in them
 }
 
-// In the order in which a step uses them: the masses, what was there at its start, then the results.
+// In the order in which a step uses them: the masses, what was there at its start, then the
+// results.
 template <int Dim>
 void Guard<Dim>::check_fields(bool at_rest_too) {
   for (const Lifetime lifetime : {Lifetime::reference, Lifetime::state})
@@ -146,9 +165,11 @@ void Guard<Dim>::check_bounds(bool note) {
     const FieldBound& bound = bounds_[k];
     const ParticleSet<Dim>& set = world_.set(bound.set);
     const auto& values = set.scalar(*bound.field);
-    std::vector<Extremes> parts(static_cast<std::size_t>((set.size() + block_size - 1) / block_size));
+    std::vector<Extremes> parts(
+        static_cast<std::size_t>((set.size() + block_size - 1) / block_size));
     parallel_blocks(set.size(), block_size, [&](Index begin, Index end, Index b) {
-      parts[static_cast<std::size_t>(b)] = Extremes({values.data() + begin, static_cast<std::size_t>(end - begin)});
+      parts[static_cast<std::size_t>(b)] =
+          Extremes({values.data() + begin, static_cast<std::size_t>(end - begin)});
     });
     Extremes all;
     for (const Extremes& part : parts) all.take(part);
@@ -158,7 +179,8 @@ void Guard<Dim>::check_bounds(bool note) {
     for (Index i = 0; i < set.size(); ++i)
       if (!(values[i] >= bound.low && values[i] <= bound.high))
         stop(bound.field->name, set, *bound.field, i,
-             fmt::format("the {} of {:.5g} {} is outside of [{:.5g}, {:.5g}] at", bound.field->name, values[i], bound.field->unit.symbol, bound.low, bound.high),
+             fmt::format("the {} of {:.5g} {} is outside of [{:.5g}, {:.5g}] at", bound.field->name,
+                         values[i], bound.field->unit.symbol, bound.low, bound.high),
              bound.cause);
   }
 }
@@ -173,15 +195,17 @@ void Guard<Dim>::check_lost() {
     const Index all = std::max(initial_.at(name), world_.set(name).size() + lost);
     if (static_cast<double>(lost + stuck) <= budget * static_cast<double>(all)) continue;
     throw UnstableError(
-        fmt::format("of {} particles of set '{}', {} have left the domain and {} sit inside a wall at t = {:.6g} s, more than the budget of {:.3g} % "
-                    "(numerics.max_lost_fraction); look for a hole in the boundaries, a domain that is too small, or a wall that moves too fast",
+        fmt::format("of {} particles of set '{}', {} have left the domain and {} sit inside a wall "
+                    "at t = {:.6g} s, more than the budget of {:.3g} % "
+                    "(numerics.max_lost_fraction); look for a hole in the boundaries, a domain "
+                    "that is too small, or a wall that moves too fast",
                     all, name, lost, stuck, world_.clock.time, 100 * budget),
         {stuck > lost ? "penetration" : "lost", "", name, {}, {}, world_.clock.time});
   }
 }
 
-// A particle is inside a wall when it lies behind the particles of the wall's first layer: more than half a
-// spacing below the surface. What is clamped may be there: it does not move.
+// A particle is inside a wall when it lies behind the particles of the wall's first layer: more
+// than half a spacing below the surface. What is clamped may be there: it does not move.
 template <int Dim>
 void Guard<Dim>::count_penetrations() {
   const ParticleSet<Dim>* walls = world_.find("walls");
@@ -227,7 +251,8 @@ std::string Guard<Dim>::writer_of(const std::string& set, const FieldSpec& field
   std::string name;
   for (const auto& e : plan_.effects())
     for (const FieldUse& use : e.needs.fields)
-      if (use.set == set && use.field == &field && use.access != Access::read && e.info.stage != Stage::observe) {
+      if (use.set == set && use.field == &field && use.access != Access::read &&
+          e.info.stage != Stage::observe) {
         if (use.access == Access::write) return e.info.name;
         name = e.info.name;
       }
@@ -236,37 +261,50 @@ std::string Guard<Dim>::writer_of(const std::string& set, const FieldSpec& field
 
 /// Where in the deck to look.
 template <int Dim>
-std::string Guard<Dim>::suspect(const ParticleSet<Dim>& set, Index i, const std::string& look_for) const {
+std::string Guard<Dim>::suspect(const ParticleSet<Dim>& set, Index i,
+                                const std::string& look_for) const {
   const Model& model = world_.model();
   const auto part = static_cast<std::size_t>(set.tag(fields::part)[i]);
   const bool wall = set.name() == "walls";
   const std::string path = fmt::format("{}[{}]", wall ? "boundaries" : "bodies", part);
   const Place at = model.place_of(path);
-  const std::string name = wall ? (part < model.boundaries.size() ? model.boundaries[part]->name : "") : (part < model.bodies.size() ? model.bodies[part].name : "");
-  std::string out = name.empty() ? "; it has entered through a boundary"
-                                 : fmt::format("; it belongs to {} '{}' ({}:{}:{})", wall ? "boundary" : "body", name, at.file, at.line, at.column);
+  const std::string name =
+      wall ? (part < model.boundaries.size() ? model.boundaries[part]->name : "")
+           : (part < model.bodies.size() ? model.bodies[part].name : "");
+  std::string out =
+      name.empty() ? "; it has entered through a boundary"
+                   : fmt::format("; it belongs to {} '{}' ({}:{}:{})", wall ? "boundary" : "body",
+                                 name, at.file, at.line, at.column);
   if (world_.model().body_force && !world_.pull(set.vector(fields::position)[i]).allFinite()) {
     const Place force = model.place_of("body_force");
-    out += fmt::format("; body_force is not finite there ({}:{}:{})", force.file, force.line, force.column);
+    out += fmt::format("; body_force is not finite there ({}:{}:{})", force.file, force.line,
+                       force.column);
   } else if (!look_for.empty()) {
     out += "; likely: " + look_for;
   } else if (world_.clock.advection_steps < 3) {
-    out += "; likely: a start far from equilibrium, such as bodies that touch or a formula that is no number";
+    out +=
+        "; likely: a start far from equilibrium, such as bodies that touch or a formula that is no "
+        "number";
   } else {
-    out += "; likely: pressures that the speed of sound cannot carry, or a formula that is no number at that time";
+    out +=
+        "; likely: pressures that the speed of sound cannot carry, or a formula that is no number "
+        "at that time";
   }
   return out;
 }
 
 template <int Dim>
-void Guard<Dim>::stop(std::string cause, const ParticleSet<Dim>& set, const FieldSpec& field, Index i,
-                      const std::string& what, const std::string& look_for) {
+void Guard<Dim>::stop(std::string cause, const ParticleSet<Dim>& set, const FieldSpec& field,
+                      Index i, const std::string& what, const std::string& look_for) {
   const Vec3 at = to_space<Dim>(set.vector(fields::position)[i]);
   const std::string effect = writer_of(set.name(), field);
-  throw UnstableError(fmt::format("set '{}' became unstable at t = {:.6g} s (advection step {}): {} particle {} at ({:.4g}, {:.4g}, {:.4g}) m{}{}",
-                                  set.name(), world_.clock.time, world_.clock.advection_steps, what, set.ids()[i], at.x(), at.y(), at.z(),
-                                  effect.empty() ? "" : ", by effect " + effect, suspect(set, i, look_for)),
-                      {std::move(cause), effect, set.name(), set.ids()[i], at, world_.clock.time});
+  throw UnstableError(
+      fmt::format("set '{}' became unstable at t = {:.6g} s (advection step {}): {} particle {} at "
+                  "({:.4g}, {:.4g}, {:.4g}) m{}{}",
+                  set.name(), world_.clock.time, world_.clock.advection_steps, what, set.ids()[i],
+                  at.x(), at.y(), at.z(), effect.empty() ? "" : ", by effect " + effect,
+                  suspect(set, i, look_for)),
+      {std::move(cause), effect, set.name(), set.ids()[i], at, world_.clock.time});
 }
 
 template <int Dim>
@@ -274,11 +312,15 @@ std::vector<std::pair<std::string, double>> Guard<Dim>::extremes() const {
   std::vector<std::pair<std::string, double>> out{{"max_mach", largest_mach_}};
   for (std::size_t k = 0; k < bounds_.size(); ++k) {
     if (seen_[k].first > seen_[k].second) continue;
-    out.emplace_back(fmt::format("min_{}_{}", bounds_[k].field->name, bounds_[k].set), seen_[k].first);
-    out.emplace_back(fmt::format("max_{}_{}", bounds_[k].field->name, bounds_[k].set), seen_[k].second);
+    out.emplace_back(fmt::format("min_{}_{}", bounds_[k].field->name, bounds_[k].set),
+                     seen_[k].first);
+    out.emplace_back(fmt::format("max_{}_{}", bounds_[k].field->name, bounds_[k].set),
+                     seen_[k].second);
   }
-  for (const auto& [name, n] : world_.lost()) out.emplace_back("lost_" + name, static_cast<double>(n));
-  for (const auto& [name, n] : in_walls_) out.emplace_back("in_walls_" + name, static_cast<double>(n));
+  for (const auto& [name, n] : world_.lost())
+    out.emplace_back("lost_" + name, static_cast<double>(n));
+  for (const auto& [name, n] : in_walls_)
+    out.emplace_back("in_walls_" + name, static_cast<double>(n));
   return out;
 }
 
@@ -300,7 +342,8 @@ template <int Dim>
 void Guard<Dim>::load(const StateSource& source) {
   for (auto& [name, n] : initial_) n = source.count("guard/initial/" + name);
   for (const auto& s : world_.sets())
-    if (const std::string at = "guard/in_walls/" + s->name(); source.has(at)) in_walls_[s->name()] = source.count(at);
+    if (const std::string at = "guard/in_walls/" + s->name(); source.has(at))
+      in_walls_[s->name()] = source.count(at);
   largest_dt_ = source.number("guard/largest_dt");
   largest_solid_ = source.has("guard/largest_solid") ? source.number("guard/largest_solid") : 0;
   largest_mach_ = source.number("guard/largest_mach");

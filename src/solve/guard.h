@@ -1,6 +1,6 @@
 #pragma once
-// Watches a running scene and stops it when it has become unstable: with the effect, the particle, the
-// place, the time, and what to look for.
+// Watches a running scene and stops it when it has become unstable: with the effect, the particle,
+// the place, the time, and what to look for.
 
 #include <map>
 #include <string>
@@ -13,11 +13,12 @@
 
 namespace sphgeo {
 
-/// Checks: every acoustic step, the speed against the speed of sound (which a value that is no number
-/// anywhere in the sums reaches within the same step) and the size of the step and of the steps of solids in it; every advection step, all
-/// saved fields of sets that move for values that are not finite, the bounds that the effects declare
-/// (density, volume fraction), and lost particles; every 16th and before a checkpoint, also sets at rest
-/// (whose values nobody reads again) and particles that sit inside a wall. All throw UnstableError.
+/// Checks: every acoustic step, the speed against the speed of sound (which a value that is no
+/// number anywhere in the sums reaches within the same step) and the size of the step and of the
+/// steps of solids in it; every advection step, all saved fields of sets that move for values that
+/// are not finite, the bounds that the effects declare (density, volume fraction), and lost
+/// particles; every 16th and before a checkpoint, also sets at rest (whose values nobody reads
+/// again) and particles that sit inside a wall. All throw UnstableError.
 template <int Dim>
 class Guard {
  public:
@@ -40,13 +41,14 @@ class Guard {
 
  private:
   void check_speed(const StepLimits& limits);
-  [[noreturn]] void stop_collapsed(const char* which, double dt, double before, const StepLimits& limits);
+  [[noreturn]] void stop_collapsed(const char* which, double dt, double before,
+                                   const StepLimits& limits);
   void check_fields(bool at_rest_too);
   void check_bounds(bool note);
   void check_lost();
   void count_penetrations();
-  [[noreturn]] void stop(std::string cause, const ParticleSet<Dim>& set, const FieldSpec& field, Index i,
-                         const std::string& what, const std::string& look_for);
+  [[noreturn]] void stop(std::string cause, const ParticleSet<Dim>& set, const FieldSpec& field,
+                         Index i, const std::string& what, const std::string& look_for);
   std::string writer_of(const std::string& set, const FieldSpec& field) const;
   std::string suspect(const ParticleSet<Dim>& set, Index i, const std::string& look_for) const;
 

@@ -11,9 +11,9 @@ template <int Dim>
 bool Stepper<Dim>::run(double end, const RunHooks& hooks) {
   for (;;) {
     if (left_ == 0) {
-      rearrange();                                       // lines 7, 28
+      rearrange();  // lines 7, 28
       if (!hooks.at_safe_point()) return false;
-      if (world_.clock.time >= end) return true;         // line 9
+      if (world_.clock.time >= end) return true;  // line 9
       begin_step();
     }
     if (!advance(hooks)) return false;
@@ -27,15 +27,16 @@ void Stepper<Dim>::rearrange() {
   plan_.run(Stage::exchange);
   const auto start = std::chrono::steady_clock::now();
   world_.rearrange();
-  seconds_rearranging_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  seconds_rearranging_ +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   ++rearrangements_;
-  plan_.run(Stage::reinitialize);                        // lines 11, 12
+  plan_.run(Stage::reinitialize);  // lines 11, 12
 }
 
 template <int Dim>
 void Stepper<Dim>::begin_step() {
-  // Line 10, without the clip to the end of the run: the last step may pass it, so that a run which is
-  // continued later takes the same steps as one that was longer from the start.
+  // Line 10, without the clip to the end of the run: the last step may pass it, so that a run which
+  // is continued later takes the same steps as one that was longer from the start.
   world_.clock.dt_advection = left_ = plan_.limits().advection;
   start_ = world_.clock.time;
 }
@@ -43,14 +44,14 @@ void Stepper<Dim>::begin_step() {
 template <int Dim>
 bool Stepper<Dim>::advance(const RunHooks& hooks) {
   Clock& clock = world_.clock;
-  while (left_ > 0) {                                    // line 14
+  while (left_ > 0) {  // line 14
     if (!hooks.before_acoustic_step()) return false;
     const StepLimits limits = plan_.limits();
     // Line 15, with what is left divided evenly: no sliver of a step at the end.
     const double steps = std::max(1.0, std::ceil(left_ / limits.acoustic - 1e-9));
     const double dt = left_ / steps;
     guard_.before_step(limits, dt);
-    acoustic_step(dt, limits.solid);                     // lines 16 to 25
+    acoustic_step(dt, limits.solid);  // lines 16 to 25
     left_ = steps == 1 ? 0 : left_ - dt;
     clock.time = left_ == 0 ? start_ + clock.dt_advection : clock.time + dt;  // line 26
   }
@@ -61,17 +62,19 @@ bool Stepper<Dim>::advance(const RunHooks& hooks) {
 template <int Dim>
 void Stepper<Dim>::acoustic_step(double dt, double solid_limit) {
   world_.clock.dt_acoustic = dt;
-  plan_.run(Stage::predict);   // Eq. 96
-  plan_.run(Stage::force);     // Eq. 60
-  plan_.run(Stage::kick);      // Eqs. 97, 98
-  // Algorithm 2 moves the solids last. Then water and soil would be compressed by the solids of the step before, and that delay
-  // feeds energy to whatever is lighter than they are (see light_solids.h).
+  plan_.run(Stage::predict);  // Eq. 96
+  plan_.run(Stage::force);    // Eq. 60
+  plan_.run(Stage::kick);     // Eqs. 97, 98
+  // Algorithm 2 moves the solids last. Then water and soil would be compressed by the solids of the
+  // step before, and that delay feeds energy to whatever is lighter than they are (see
+  // light_solids.h).
   if (solid_limit < std::numeric_limits<double>::infinity()) solid_steps(dt, solid_limit);
-  plan_.run(Stage::rate);      // Eq. 58
-  plan_.run(Stage::correct);   // Eq. 98
+  plan_.run(Stage::rate);     // Eq. 58
+  plan_.run(Stage::correct);  // Eq. 98
   ++world_.clock.acoustic_steps;
   for (const auto& set : world_.sets())
-    if (set->phase() == "water" || set->phase() == "soil") particle_updates_ += static_cast<double>(set->size());
+    if (set->phase() == "water" || set->phase() == "soil")
+      particle_updates_ += static_cast<double>(set->size());
 }
 
 // Lines 19 to 25. Their number is fixed here, so that the average of Eq. 95 is exact.

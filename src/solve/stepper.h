@@ -12,8 +12,9 @@ namespace sphgeo {
 struct RunHooks {
   /// At the start and after every advection step, with lists and derived fields fresh. False: stop.
   std::function<bool()> at_safe_point;
-  /// Between an advection step and the rearrangement that follows it: what the sets hold now is all that
-  /// the rest of the run depends on. False: stop before the rearrangement, as a resumed run begins with it.
+  /// Between an advection step and the rearrangement that follows it: what the sets hold now is all
+  /// that the rest of the run depends on. False: stop before the rearrangement, as a resumed run
+  /// begins with it.
   std::function<bool()> before_rearranging = [] { return true; };
   /// Before an acoustic step: the run can be saved here too. False: stop within the advection step.
   std::function<bool()> before_acoustic_step = [] { return true; };
@@ -24,16 +25,17 @@ class Stepper {
  public:
   Stepper(World<Dim>& world, Plan<Dim>& plan) : world_(world), plan_(plan), guard_(world, plan) {}
 
-  /// Runs until the first safe point at or after `end` (s), or until a hook says stop; returns whether it
-  /// got to the end. Throws UnstableError when the guard stops it.
+  /// Runs until the first safe point at or after `end` (s), or until a hook says stop; returns
+  /// whether it got to the end. Throws UnstableError when the guard stops it.
   bool run(double end, const RunHooks& hooks);
 
   Guard<Dim>& guard() { return guard_; }
   const Guard<Dim>& guard() const { return guard_; }
 
   /// The counters below and the guard's.
-  /// Within an advection step also what is left of it, and what its acoustic steps rest on: loading, after the
-  /// world, rebuilds lists and records, and run() begins with the next acoustic step.
+  /// Within an advection step also what is left of it, and what its acoustic steps rest on:
+  /// loading, after the world, rebuilds lists and records, and run() begins with the next acoustic
+  /// step.
   void save(StateSink& sink) const;
   void load(const StateSource& source);
 
@@ -52,7 +54,8 @@ class Stepper {
   World<Dim>& world_;
   Plan<Dim>& plan_;
   Guard<Dim> guard_;
-  double start_ = 0, left_ = 0;  ///< of the advection step: its begin, and what is to come of it, s; 0 between two steps
+  double start_ = 0, left_ = 0;  ///< of the advection step: its begin, and what is to come of it,
+                                 ///< s; 0 between two steps
   double seconds_rearranging_ = 0;
   double particle_updates_ = 0;
   long rearrangements_ = 0;

@@ -116,7 +116,7 @@ class CellGrid {
   std::vector<std::uint32_t> start_{0, 0};
   AlignedVector<std::uint32_t> order_;
   AlignedVector<std::int32_t> coordinate_[Dim];
-  AlignedVector<std::uint32_t> key_;         // scratch of build
+  AlignedVector<std::uint32_t> key_;  // scratch of build
   AlignedVector<std::int32_t> unsorted_[Dim];
 };
 

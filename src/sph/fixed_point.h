@@ -11,9 +11,9 @@
 namespace sphgeo {
 
 /// Maps positions of one scene to integers in (0, 2^31): position = origin + quantum * integer. All
-/// sets that meet in a neighbor list use the same one. The box it is fitted to fills the middle half
-/// of the range, and positions are clamped half way to its ends: any two integers differ by less
-/// than 2^31, and the point 0, where null records sit, is out of reach of every particle.
+/// sets that meet in a neighbor list use the same one. The box it is fitted to fills the middle
+/// half of the range, and positions are clamped half way to its ends: any two integers differ by
+/// less than 2^31, and the point 0, where null records sit, is out of reach of every particle.
 template <int Dim>
 struct FixedPoint {
   Vec<Dim> origin = Vec<Dim>::Zero();  ///< position of the integer 0 [m]
@@ -51,9 +51,7 @@ struct FixedPoint {
     return local > lowest ? (local < highest ? local : highest) : lowest;
   }
 
-  bool operator==(const FixedPoint& b) const {
-    return origin == b.origin && quantum == b.quantum;
-  }
+  bool operator==(const FixedPoint& b) const { return origin == b.origin && quantum == b.quantum; }
 };
 
 }  // namespace sphgeo

@@ -41,8 +41,8 @@ struct Kernel {
     return s2 * s2 * (T(4) * half_q + T(1)) * T(factor);
   }
 
-  /// W'(r) / r [1/m^(Dim+2)]: times the separation r_i - r_j it is the gradient of W at i. Negative,
-  /// and regular at r = 0.
+  /// W'(r) / r [1/m^(Dim+2)]: times the separation r_i - r_j it is the gradient of W at i.
+  /// Negative, and regular at r = 0.
   template <class T>
   T dw_over_r(T r2) const {
     const T s = max(T(0), T(1) - length(r2) * T(half_over_h));

@@ -1,11 +1,11 @@
 #pragma once
 // Short vectors of numbers for the pair loops: the only header that knows the instruction set.
 //
-// A pair function is written once as a template on its number type and instantiated with `Lanes` (one
-// neighbor per lane) and with plain `double` (brute force). All operations here exist for both.
-// Arithmetic uses vector extensions of the compiler; only what they lack is done by intrinsics, for
-// AVX-512, AVX2, or neither. Results are the same for any number of threads, but may differ in the
-// last bits between instruction sets.
+// A pair function is written once as a template on its number type and instantiated with `Lanes`
+// (one neighbor per lane) and with plain `double` (brute force). All operations here exist for
+// both. Arithmetic uses vector extensions of the compiler; only what they lack is done by
+// intrinsics, for AVX-512, AVX2, or neither. Results are the same for any number of threads, but
+// may differ in the last bits between instruction sets.
 
 #include <array>
 #include <bit>
@@ -53,8 +53,7 @@ struct Lanes {
   Lanes(Raw v) : raw(v) {}
   /// The same number in all lanes; any arithmetic type, so that pair functions may write 2 * x.
   template <class S>
-    requires std::is_arithmetic_v<S>
-  Lanes(S s) : raw(static_cast<T>(s) - Raw{}) {}
+  requires std::is_arithmetic_v<S> Lanes(S s) : raw(static_cast<T>(s) - Raw{}) {}
 
   T operator[](int k) const { return raw[k]; }
 
@@ -89,22 +88,36 @@ struct ScalarOf<Lanes<T, W>> {
 // ---- plain numbers -----------------------------------------------------------------------------
 
 template <std::floating_point T>
-T select(bool m, T a, T b) { return m ? a : b; }
+T select(bool m, T a, T b) {
+  return m ? a : b;
+}
 /// The smaller; b if either is NaN. So `min(bound, x)` lets a NaN of x pass. Same for max.
 template <std::floating_point T>
-T min(T a, T b) { return a < b ? a : b; }
+T min(T a, T b) {
+  return a < b ? a : b;
+}
 template <std::floating_point T>
-T max(T a, T b) { return a > b ? a : b; }
+T max(T a, T b) {
+  return a > b ? a : b;
+}
 template <std::floating_point T>
-T sqrt(T a) { return std::sqrt(a); }
+T sqrt(T a) {
+  return std::sqrt(a);
+}
 template <std::floating_point T>
-T abs(T a) { return std::fabs(a); }
+T abs(T a) {
+  return std::fabs(a);
+}
 /// 1 / sqrt(a), to about the last bit.
 template <std::floating_point T>
-T rsqrt(T a) { return T(1) / std::sqrt(a); }
+T rsqrt(T a) {
+  return T(1) / std::sqrt(a);
+}
 /// 1 / a, to about the last bit.
 template <std::floating_point T>
-T reciprocal(T a) { return T(1) / a; }
+T reciprocal(T a) {
+  return T(1) / a;
+}
 
 // ---- lanes -------------------------------------------------------------------------------------
 
@@ -123,42 +136,50 @@ inline constexpr bool is_256 = lane_bytes >= 32 && W * sizeof(T) == 32;
 template <class T, int W>
 Lanes<T, W> min(Lanes<T, W> a, Lanes<T, W> b) {
 #if defined(__AVX512F__)
-  if constexpr (std::same_as<T, float> && detail::is_512<T, W>) return {_mm512_maskz_min_ps(detail::all_16, a.raw, b.raw)};
-  else if constexpr (detail::is_512<T, W>) return {_mm512_maskz_min_pd(detail::all_8, a.raw, b.raw)};
+  if constexpr (std::same_as<T, float> && detail::is_512<T, W>)
+    return {_mm512_maskz_min_ps(detail::all_16, a.raw, b.raw)};
+  else if constexpr (detail::is_512<T, W>)
+    return {_mm512_maskz_min_pd(detail::all_8, a.raw, b.raw)};
   else
 #endif
 #if defined(__AVX2__)
-  if constexpr (std::same_as<T, float> && detail::is_256<T, W>) return {_mm256_min_ps(a.raw, b.raw)};
+      if constexpr (std::same_as<T, float> && detail::is_256<T, W>)
+    return {_mm256_min_ps(a.raw, b.raw)};
   else if constexpr (detail::is_256<T, W>) return {_mm256_min_pd(a.raw, b.raw)};
   else
 #endif
-  return select(a < b, a, b);
+    return select(a < b, a, b);
 }
 
 template <class T, int W>
 Lanes<T, W> max(Lanes<T, W> a, Lanes<T, W> b) {
 #if defined(__AVX512F__)
-  if constexpr (std::same_as<T, float> && detail::is_512<T, W>) return {_mm512_maskz_max_ps(detail::all_16, a.raw, b.raw)};
-  else if constexpr (detail::is_512<T, W>) return {_mm512_maskz_max_pd(detail::all_8, a.raw, b.raw)};
+  if constexpr (std::same_as<T, float> && detail::is_512<T, W>)
+    return {_mm512_maskz_max_ps(detail::all_16, a.raw, b.raw)};
+  else if constexpr (detail::is_512<T, W>)
+    return {_mm512_maskz_max_pd(detail::all_8, a.raw, b.raw)};
   else
 #endif
 #if defined(__AVX2__)
-  if constexpr (std::same_as<T, float> && detail::is_256<T, W>) return {_mm256_max_ps(a.raw, b.raw)};
+      if constexpr (std::same_as<T, float> && detail::is_256<T, W>)
+    return {_mm256_max_ps(a.raw, b.raw)};
   else if constexpr (detail::is_256<T, W>) return {_mm256_max_pd(a.raw, b.raw)};
   else
 #endif
-  return select(a > b, a, b);
+    return select(a > b, a, b);
 }
 
 template <class T, int W>
 Lanes<T, W> sqrt(Lanes<T, W> a) {
 #if defined(__AVX512F__)
-  if constexpr (std::same_as<T, float> && detail::is_512<T, W>) return {_mm512_maskz_sqrt_ps(detail::all_16, a.raw)};
+  if constexpr (std::same_as<T, float> && detail::is_512<T, W>)
+    return {_mm512_maskz_sqrt_ps(detail::all_16, a.raw)};
   else if constexpr (detail::is_512<T, W>) return {_mm512_maskz_sqrt_pd(detail::all_8, a.raw)};
   else
 #endif
 #if defined(__AVX2__)
-  if constexpr (std::same_as<T, float> && detail::is_256<T, W>) return {_mm256_sqrt_ps(a.raw)};
+      if constexpr (std::same_as<T, float> && detail::is_256<T, W>)
+    return {_mm256_sqrt_ps(a.raw)};
   else if constexpr (detail::is_256<T, W>) return {_mm256_sqrt_pd(a.raw)};
   else
 #endif
@@ -182,15 +203,16 @@ Lanes<T, W> rsqrt(Lanes<T, W> a) {
 #if defined(__AVX512F__)
   if constexpr (std::same_as<T, float> && detail::is_512<T, W>)
     return newton(L(_mm512_maskz_rsqrt14_ps(detail::all_16, a.raw)));
-  else if constexpr (detail::is_512<T, W>) return newton(newton(L(_mm512_maskz_rsqrt14_pd(detail::all_8, a.raw))));
+  else if constexpr (detail::is_512<T, W>)
+    return newton(newton(L(_mm512_maskz_rsqrt14_pd(detail::all_8, a.raw))));
   else
 #endif
 #if defined(__AVX2__)
-  if constexpr (std::same_as<T, float> && detail::is_256<T, W>)
+      if constexpr (std::same_as<T, float> && detail::is_256<T, W>)
     return newton(L(_mm256_rsqrt_ps(a.raw)));
   else
 #endif
-  return L(T(1)) / sqrt(a);
+    return L(T(1)) / sqrt(a);
 }
 
 /// 1 / a, to about the last bit. Wants a finite number other than zero.
@@ -201,15 +223,16 @@ Lanes<T, W> reciprocal(Lanes<T, W> a) {
 #if defined(__AVX512F__)
   if constexpr (std::same_as<T, float> && detail::is_512<T, W>)
     return newton(L(_mm512_maskz_rcp14_ps(detail::all_16, a.raw)));
-  else if constexpr (detail::is_512<T, W>) return newton(newton(L(_mm512_maskz_rcp14_pd(detail::all_8, a.raw))));
+  else if constexpr (detail::is_512<T, W>)
+    return newton(newton(L(_mm512_maskz_rcp14_pd(detail::all_8, a.raw))));
   else
 #endif
 #if defined(__AVX2__)
-  if constexpr (std::same_as<T, float> && detail::is_256<T, W>)
+      if constexpr (std::same_as<T, float> && detail::is_256<T, W>)
     return newton(L(_mm256_rcp_ps(a.raw)));
   else
 #endif
-  return L(T(1)) / a;
+    return L(T(1)) / a;
 }
 
 namespace detail {
@@ -250,10 +273,10 @@ N length(N r2) {
 /// Numbers in one record.
 inline constexpr int record_size = 8;
 
-/// Loads one record of 8 numbers per lane and transposes them in registers: out[f] holds number f of
-/// the records that start at base + offset[0], base + offset[1], ... Records are aligned to their
-/// size. Hardware gathers would take three to four times as long. The lanes come in an order of
-/// their own, the same for all f.
+/// Loads one record of 8 numbers per lane and transposes them in registers: out[f] holds number f
+/// of the records that start at base + offset[0], base + offset[1], ... Records are aligned to
+/// their size. Hardware gathers would take three to four times as long. The lanes come in an order
+/// of their own, the same for all f.
 template <class T>
 inline void load_records(const T* base, const std::uint32_t* offset, Lanes<T>* out) {
   constexpr int width = native_width<T>;
@@ -337,60 +360,6 @@ inline void load_records(const T* base, const std::uint32_t* offset, Lanes<T>* o
   }
 #endif
   static_assert(width >= 2);
-}
-
-// ---- compression -------------------------------------------------------------------------------
-
-/// Lanes of 32-bit integers beside lanes of float.
-using FloatLanes = Lanes<float>;
-using IntLanes = FloatLanes::Mask;
-
-#if defined(__AVX2__) && !defined(__AVX512F__)
-namespace detail {
-// For each set of kept lanes the lanes to move to the front, 4 bits each.
-constexpr std::array<std::uint32_t, 256> make_front_lanes() {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t kept = 0; kept < 256; ++kept) {
-    std::uint32_t place = 0;
-    for (std::uint32_t lane = 0; lane < 8; ++lane)
-      if (kept >> lane & 1) table[kept] |= lane << (4 * place++);
-  }
-  return table;
-}
-inline constexpr auto front_lanes = make_front_lanes();
-}  // namespace detail
-#endif
-
-/// Appends to out, in order, the values of the lanes where distance < limit and value != excluded;
-/// returns the new end. Writes up to a full register past it.
-inline std::uint32_t* append_below(std::uint32_t* out, IntLanes values, FloatLanes distance,
-                                   FloatLanes limit, std::int32_t excluded) {
-#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
-  // Compressing in the register and storing all of it: compressing stores are slow on some machines.
-  const auto v = std::bit_cast<__m512i>(values);
-  const __mmask16 kept =
-      _mm512_mask_cmplt_ps_mask(_mm512_cmpneq_epi32_mask(v, _mm512_set1_epi32(excluded)),
-                                distance.raw, limit.raw);
-  _mm512_storeu_si512(out, _mm512_maskz_compress_epi32(kept, v));
-  return out + std::popcount(static_cast<std::uint32_t>(kept));
-#else
-  const IntLanes kept = (distance < limit) & (values != excluded);
-#if defined(__AVX2__) && defined(__FMA__)
-  const auto mask = static_cast<std::uint32_t>(_mm256_movemask_ps(std::bit_cast<__m256>(kept)));
-  const __m256i shifts = _mm256_setr_epi32(0, 4, 8, 12, 16, 20, 24, 28);
-  const __m256i lanes =
-      _mm256_srlv_epi32(_mm256_set1_epi32(static_cast<int>(detail::front_lanes[mask])), shifts);
-  _mm256_storeu_si256(reinterpret_cast<__m256i*>(out),
-                      _mm256_permutevar8x32_epi32(std::bit_cast<__m256i>(values), lanes));
-  return out + std::popcount(mask);
-#else
-  for (int k = 0; k < FloatLanes::width; ++k) {
-    *out = static_cast<std::uint32_t>(values[k]);
-    out += kept[k] != 0;
-  }
-  return out;
-#endif
-#endif
 }
 
 }  // namespace sphgeo

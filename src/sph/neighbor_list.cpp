@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "sph/lanes.h"
+#include "sph/append_below.h"
 
 namespace sphgeo {
 
@@ -28,9 +28,9 @@ FloatLanes to_float(IntLanes v) { return FloatLanes(__builtin_convertvector(v, F
 // A search in units in which all differences are exact in single precision: quanta, or the power of
 // two times a quantum that leaves 23 bits for four times the radius. So distances are symmetric.
 struct Scale {
-  int shift = 0;      // coordinates in these units: quanta >> shift
-  double reach = 0;   // radius in quanta
-  float limit = 0;    // squared radius in these units
+  int shift = 0;     // coordinates in these units: quanta >> shift
+  double reach = 0;  // radius in quanta
+  float limit = 0;   // squared radius in these units
 
   explicit Scale(double radius_in_quanta) : reach(radius_in_quanta) {
     shift = std::max(0, std::ilogb(std::max(reach, 1.0)) + 3 - 23);
@@ -97,7 +97,8 @@ std::uint32_t* select_near(const Candidates<Dim>& candidates, const float* at, f
   return out;
 }
 
-// Gives back memory that the next search will not need either, if it is much; `used` entries are kept.
+// Gives back memory that the next search will not need either, if it is much; `used` entries are
+// kept.
 void fit(AlignedVector<std::uint32_t>& entries, std::size_t used, std::size_t needed) {
   if (entries.capacity() <= needed + needed / 8) return;
   AlignedVector<std::uint32_t> fitted;

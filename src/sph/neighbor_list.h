@@ -1,5 +1,6 @@
 #pragma once
-// Who is near whom: for each particle of a target set the particles of a source set within a radius.
+// Who is near whom: for each particle of a target set the particles of a source set within a
+// radius.
 
 #include <cstdint>
 #include <span>
@@ -43,7 +44,8 @@ class NeighborList {
   void build(std::span<const Vec<Dim>> targets, const CellGrid<Dim>& sources, double radius,
              Pairing pairing);
 
-  /// Keeps the pairs (i, j) for which keep(i, j) holds; targets that have none left are walked as before.
+  /// Keeps the pairs (i, j) for which keep(i, j) holds; targets that have none left are walked as
+  /// before.
   template <class F>
   void filter(F&& keep);
 
@@ -86,7 +88,8 @@ void NeighborList::filter(F&& keep) {
       std::uint32_t* entry = block.entries.data() + block.begin[k];
       std::uint32_t kept = 0;
       for (std::uint32_t e = 0; e < block.count[k]; ++e)
-        if (keep(static_cast<Index>(block.targets[k]), static_cast<Index>(entry[e] / 8))) entry[kept++] = entry[e];
+        if (keep(static_cast<Index>(block.targets[k]), static_cast<Index>(entry[e] / 8)))
+          entry[kept++] = entry[e];
       for (std::uint32_t e = kept; e < block.count[k]; ++e) entry[e] = null_offset;
       block.count[k] = kept;
     }

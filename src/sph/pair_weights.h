@@ -23,10 +23,13 @@ struct PairWeights {
     /// Calls f(other, weight) for the entries of row i.
     template <class F>
     void for_row(Index i, F&& f) const {
-      for (std::uint32_t k = begin[static_cast<std::size_t>(i)]; k < begin[static_cast<std::size_t>(i) + 1]; ++k)
+      for (std::uint32_t k = begin[static_cast<std::size_t>(i)];
+           k < begin[static_cast<std::size_t>(i) + 1]; ++k)
         f(static_cast<Index>(entries[k].other), entries[k].weight);
     }
-    std::size_t bytes() const { return begin.capacity() * sizeof(std::uint32_t) + entries.capacity() * sizeof(Entry); }
+    std::size_t bytes() const {
+      return begin.capacity() * sizeof(std::uint32_t) + entries.capacity() * sizeof(Entry);
+    }
   };
   Rows by_target, by_source;
 

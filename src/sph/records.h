@@ -1,6 +1,6 @@
 #pragma once
-// Packed copies of the few fields that one pass over pairs needs: 8 numbers per particle, in one half
-// or one whole cache line.
+// Packed copies of the few fields that one pass over pairs needs: 8 numbers per particle, in one
+// half or one whole cache line.
 
 #include <bit>
 #include <cstdint>
@@ -17,8 +17,9 @@ namespace sphgeo {
 /// n records of 8 numbers of type T (float or double), and the null record n, all zero: it pads
 /// neighbor lists. A pair function must vanish for it, which it does if every term carries the
 /// neighbor's volume (or mass) or a kernel, as the null record is out of everyone's reach.
-/// Slots 0 ... Dim-1 belong to the position, and are written and read by set_position and separation
-/// only (single precision keeps integers there, see FixedPoint). The effect names the others.
+/// Slots 0 ... Dim-1 belong to the position, and are written and read by set_position and
+/// separation only (single precision keeps integers there, see FixedPoint). The effect names the
+/// others.
 template <int Dim, class T>
 class Records {
  public:
@@ -93,9 +94,13 @@ struct RecordView {
 };
 
 template <int Dim, class T>
-RecordView<Dim, T, 1> view(const Records<Dim, T>& a) { return {{&a}}; }
+RecordView<Dim, T, 1> view(const Records<Dim, T>& a) {
+  return {{&a}};
+}
 template <int Dim, class T, int N>
-RecordView<Dim, T, N> view(const RecordView<Dim, T, N>& a) { return a; }
+RecordView<Dim, T, N> view(const RecordView<Dim, T, N>& a) {
+  return a;
+}
 
 /// Two record arrays of the same particles, for passes that need more than one record holds. The
 /// position is taken from the first; the second may use all 8 slots.
@@ -106,7 +111,8 @@ RecordView<Dim, T, 2> with(const Records<Dim, T>& a, const Records<Dim, T>& b) {
 
 /// Three record arrays of the same particles.
 template <int Dim, class T>
-RecordView<Dim, T, 3> with(const Records<Dim, T>& a, const Records<Dim, T>& b, const Records<Dim, T>& c) {
+RecordView<Dim, T, 3> with(const Records<Dim, T>& a, const Records<Dim, T>& b,
+                           const Records<Dim, T>& c) {
   return {{&a, &b, &c}};
 }
 

@@ -21,7 +21,8 @@ std::span<const Vec<Dim>> places_of(const ParticleSet<Dim>& set) {
 
 template <int Dim>
 World<Dim>::World(const Model& model)
-    : model_(model), gravity_(to_scene<Dim>(model.gravity)),
+    : model_(model),
+      gravity_(to_scene<Dim>(model.gravity)),
       single_(model.numerics.pair_precision == "single"),
       frozen_(model.numerics.pair_geometry == "frozen") {}
 
@@ -30,11 +31,13 @@ Vec<Dim> World<Dim>::pull(const Vec<Dim>& at) const {
   if (!model_.body_force) return gravity_;
   const auto& f = *model_.body_force;
   const Vec3 place = to_space<Dim>(at);
-  return gravity_ + to_scene<Dim>(Vec3(f[0](place, clock.time), f[1](place, clock.time), f[2](place, clock.time)));
+  return gravity_ + to_scene<Dim>(Vec3(f[0](place, clock.time), f[1](place, clock.time),
+                                       f[2](place, clock.time)));
 }
 
 template <int Dim>
-ParticleSet<Dim>& World<Dim>::add_set(std::string name, std::string phase, double spacing, double h, bool moves) {
+ParticleSet<Dim>& World<Dim>::add_set(std::string name, std::string phase, double spacing, double h,
+                                      bool moves) {
   sets_.push_back(std::make_unique<ParticleSet<Dim>>(name, std::move(phase), spacing, h));
   for (const FieldSpec* spec : {&fields::id, &fields::part, &fields::position, &fields::velocity})
     sets_.back()->require(*spec);
@@ -46,7 +49,9 @@ ParticleSet<Dim>& World<Dim>::add_set(std::string name, std::string phase, doubl
 template <int Dim>
 ParticleSet<Dim>& World<Dim>::add_solids(std::string name, double spacing, double h) {
   ParticleSet<Dim>& set = add_set(std::move(name), "solid", spacing, h, true);
-  for (const FieldSpec* spec : {&fields::mass, &fields::reference_position, &fields::reference_volume}) set.require(*spec);
+  for (const FieldSpec* spec :
+       {&fields::mass, &fields::reference_position, &fields::reference_volume})
+    set.require(*spec);
   return set;
 }
 
@@ -102,11 +107,15 @@ void World<Dim>::remove_lost(ParticleSet<Dim>& set) {
     if (lost && model_.numerics.outside != "stop" && set.phase() != "solid") continue;
     const Vec3 at = to_space<Dim>(x[i]);
     throw UnstableError(
-        lost ? fmt::format("particle {} of set '{}' left the domain at ({:.4g}, {:.4g}, {:.4g}) m, t = {:.6g} s; {}",
+        lost ? fmt::format("particle {} of set '{}' left the domain at ({:.4g}, {:.4g}, {:.4g}) m, "
+                           "t = {:.6g} s; {}",
                            set.ids()[i], set.name(), at.x(), at.y(), at.z(), clock.time,
-                           set.phase() == "solid" ? "a solid cannot lose particles: give a larger numerics.domain_min or domain_max, or something that holds it"
-                                                  : "numerics.outside is 'stop'")
-             : fmt::format("the position of particle {} of set '{}' is not finite at t = {:.6g} s", set.ids()[i], set.name(), clock.time),
+                           set.phase() == "solid"
+                               ? "a solid cannot lose particles: give a larger numerics.domain_min "
+                                 "or domain_max, or something that holds it"
+                               : "numerics.outside is 'stop'")
+             : fmt::format("the position of particle {} of set '{}' is not finite at t = {:.6g} s",
+                           set.ids()[i], set.name(), clock.time),
         {lost ? "lost" : "not_finite", "", set.name(), set.ids()[i], at, clock.time});
   }
   std::vector<std::uint32_t> keep;
@@ -136,12 +145,13 @@ void World<Dim>::rearrange() {
 
 template <int Dim>
 bool World<Dim>::is_rigid(std::int32_t part) const {
-  const MaterialSpec* material = model_.material(model_.bodies[static_cast<std::size_t>(part)].material);
+  const MaterialSpec* material =
+      model_.material(model_.bodies[static_cast<std::size_t>(part)].material);
   return material && material->type == "rigid";
 }
 
-// Solids are sorted once, by their reference positions, which also find their neighbors for good; the grid is that
-// of the places they are at.
+// Solids are sorted once, by their reference positions, which also find their neighbors for good;
+// the grid is that of the places they are at.
 template <int Dim>
 void World<Dim>::arrange_solids(ParticleSet<Dim>& set) {
   const auto list = reference_lists_.find(set.name());
@@ -149,7 +159,9 @@ void World<Dim>::arrange_solids(ParticleSet<Dim>& set) {
   if (first) {
     CellGrid<Dim> rest;
     const auto& x = set.vector(fields::reference_position);
-    const auto places = [&] { return std::span<const Vec<Dim>>(x.data(), static_cast<std::size_t>(x.size())); };
+    const auto places = [&] {
+      return std::span<const Vec<Dim>>(x.data(), static_cast<std::size_t>(x.size()));
+    };
     rest.build(places(), frame_, 2 * set.smoothing_length());
     set.permute(rest.order());
     rest.set_sorted();
@@ -161,7 +173,8 @@ void World<Dim>::arrange_solids(ParticleSet<Dim>& set) {
     if (list != reference_lists_.end()) {
       list->second.template build<Dim>(places(), rest, 2 * set.smoothing_length(), Pairing::within);
       const auto& part = set.tag(fields::part);
-      list->second.filter([&](Index i, Index j) { return part[i] == part[j] && !is_rigid(part[i]); });
+      list->second.filter(
+          [&](Index i, Index j) { return part[i] == part[j] && !is_rigid(part[i]); });
     }
   }
   grids_[set.name()].build(places_of(set), frame_, reach());
@@ -182,10 +195,14 @@ void World<Dim>::sort(ParticleSet<Dim>& set, std::span<const Vec<Dim>> at) {
 }
 
 template <int Dim>
-void World<Dim>::build_list(const std::pair<std::string, std::string>& key, NeighborList& list, std::span<const Vec<Dim>> at) {
-  // Section 3.5: pairs of different sets use the larger smoothing length, so that both see each other.
-  const double radius = 2 * std::max(set(key.first).smoothing_length(), set(key.second).smoothing_length());
-  list.template build<Dim>(at, grids_.at(key.second), radius, key.first == key.second ? Pairing::within : Pairing::across);
+void World<Dim>::build_list(const std::pair<std::string, std::string>& key, NeighborList& list,
+                            std::span<const Vec<Dim>> at) {
+  // Section 3.5: pairs of different sets use the larger smoothing length, so that both see each
+  // other.
+  const double radius =
+      2 * std::max(set(key.first).smoothing_length(), set(key.second).smoothing_length());
+  list.template build<Dim>(at, grids_.at(key.second), radius,
+                           key.first == key.second ? Pairing::within : Pairing::across);
 }
 
 template <int Dim>
@@ -312,7 +329,8 @@ void World<Dim>::load_arrangement(const StateSource& source) {
     std::vector<std::int32_t> fixed[Dim];
     for (int d = 0; d < Dim; ++d) {
       fixed[d].resize(n);
-      source.get(fmt::format("arrangement/{}/{}/listed", s->name(), d), std::span<std::int32_t>(fixed[d]));
+      source.get(fmt::format("arrangement/{}/{}/listed", s->name(), d),
+                 std::span<std::int32_t>(fixed[d]));
     }
     parallel_for(s->size(), [&](Index i) {
       std::int32_t at[Dim];
@@ -325,7 +343,8 @@ void World<Dim>::load_arrangement(const StateSource& source) {
       std::vector<typename std::decay_t<decltype(r)>::Stored> stored(n);
       for (int d = 0; d < Dim; ++d) {
         source.get(fmt::format("arrangement/{}/{}/packed", s->name(), d), std::span(stored));
-        for (std::size_t i = 0; i < n; ++i) r.set_stored_position(static_cast<Index>(i), d, stored[i]);
+        for (std::size_t i = 0; i < n; ++i)
+          r.set_stored_position(static_cast<Index>(i), d, stored[i]);
       }
     };
     RecordPair<Dim>& records = records_.at({s->name(), 0});

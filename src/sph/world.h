@@ -21,12 +21,12 @@ namespace sphgeo {
 
 /// The clocks of Algorithm 2.
 struct Clock {
-  double time = 0;          ///< s
-  double dt_acoustic = 0;   ///< of the running acoustic step, s
-  double dt_advection = 0;  ///< of the running advection step, s
-  double dt_solid = 0;      ///< of the running step of solids within it, s
-  int solid_step = 0;       ///< its number within the acoustic step, from 0
-  int solid_steps_each = 1; ///< how many there are in the acoustic step, kappa
+  double time = 0;           ///< s
+  double dt_acoustic = 0;    ///< of the running acoustic step, s
+  double dt_advection = 0;   ///< of the running advection step, s
+  double dt_solid = 0;       ///< of the running step of solids within it, s
+  int solid_step = 0;        ///< its number within the acoustic step, from 0
+  int solid_steps_each = 1;  ///< how many there are in the acoustic step, kappa
   long advection_steps = 0;
   long acoustic_steps = 0;
   long solid_steps = 0;
@@ -50,10 +50,10 @@ struct RecordPair {
 /// What came in and went out through one boundary so far; per metre of depth in 2D.
 template <int Dim>
 struct Exchanged {
-  double entered = 0, left = 0;            ///< particles
-  double mass = 0;                         ///< that came in, less what went out, kg
-  Vec<Dim> momentum = Vec<Dim>::Zero();    ///< the same, kg m/s
-  double energy = 0;                       ///< kinetic and potential, the same, J
+  double entered = 0, left = 0;          ///< particles
+  double mass = 0;                       ///< that came in, less what went out, kg
+  Vec<Dim> momentum = Vec<Dim>::Zero();  ///< the same, kg m/s
+  double energy = 0;                     ///< kinetic and potential, the same, J
 
   /// Adds what a particle brings (sign 1) or takes away (-1).
   void add(double sign, double m, const Vec<Dim>& at, const Vec<Dim>& v, const Vec<Dim>& gravity) {
@@ -77,9 +77,10 @@ class World {
   Clock clock;
 
   /// Adds a set. `moves` is false for sets whose particles never change place.
-  ParticleSet<Dim>& add_set(std::string name, std::string phase, double spacing, double h, bool moves);
-  /// Adds a set of solids: it moves, but keeps its particles, their order and their neighbors at rest. No list but
-  /// the reference list pairs them: what touches them is the set "skin".
+  ParticleSet<Dim>& add_set(std::string name, std::string phase, double spacing, double h,
+                            bool moves);
+  /// Adds a set of solids: it moves, but keeps its particles, their order and their neighbors at
+  /// rest. No list but the reference list pairs them: what touches them is the set "skin".
   ParticleSet<Dim>& add_solids(std::string name, double spacing, double h);
   /// Throws std::logic_error when there is none of that name.
   ParticleSet<Dim>& set(const std::string& name) const;
@@ -88,8 +89,11 @@ class World {
 
   void require_list(const std::string& target, const std::string& source);
   NeighborList& list(const std::string& target, const std::string& source);
-  const std::map<std::pair<std::string, std::string>, NeighborList>& lists() const { return lists_; }
-  /// Pairs of solids within one body, by their reference positions; those of rigid bodies are left out.
+  const std::map<std::pair<std::string, std::string>, NeighborList>& lists() const {
+    return lists_;
+  }
+  /// Pairs of solids within one body, by their reference positions; those of rigid bodies are left
+  /// out.
   NeighborList& reference_list(const std::string& set) { return reference_lists_.at(set); }
   void require_reference_list(const std::string& set) { reference_lists_.try_emplace(set); }
   /// What is added to the weights of those pairs; empty unless an effect fills it.
@@ -113,8 +117,8 @@ class World {
   const Vec<Dim>& domain_lo() const { return lo_; }
   const Vec<Dim>& domain_hi() const { return hi_; }
 
-  /// Line 28 of Algorithm 2: removes lost particles, sorts by cell, rebuilds grids and lists and the
-  /// places in the records.
+  /// Line 28 of Algorithm 2: removes lost particles, sorts by cell, rebuilds grids and lists and
+  /// the places in the records.
   void rearrange();
   /// Number of rearrangements so far: what was kept of single particles is void when it changes.
   long arrangement() const { return arrangement_; }
@@ -135,18 +139,19 @@ class World {
   /// Memory of fields, records, grids and lists, bytes.
   std::size_t bytes() const;
 
-  /// Saves clocks, domain, lost particles and all sets; everything else is rebuilt by rearrange(). To be
-  /// called between an advection step and the rearrangement that follows it. load() needs the sets of the
-  /// same deck, with all fields that its plan asks for.
+  /// Saves clocks, domain, lost particles and all sets; everything else is rebuilt by rearrange().
+  /// To be called between an advection step and the rearrangement that follows it. load() needs the
+  /// sets of the same deck, with all fields that its plan asks for.
   void save(StateSink& sink) const;
   void load(const StateSource& source);
 
-  /// The same within an advection step, after save() and load(): the places at the last rearrangement, which lists and
-  /// frozen pair geometry rest on. Loading rebuilds grids, lists and places in the records from them.
+  /// The same within an advection step, after save() and load(): the places at the last
+  /// rearrangement, which lists and frozen pair geometry rest on. Loading rebuilds grids, lists and
+  /// places in the records from them.
   void save_arrangement(StateSink& sink) const;
   void load_arrangement(const StateSource& source);
-  /// The places of a set at the last rearrangement, as its grid holds them: the same after save_arrangement() and
-  /// load_arrangement().
+  /// The places of a set at the last rearrangement, as its grid holds them: the same after
+  /// save_arrangement() and load_arrangement().
   std::vector<Vec<Dim>> arranged_places(const std::string& set) const;
 
  private:
@@ -154,7 +159,8 @@ class World {
   void arrange_solids(ParticleSet<Dim>& set);
   void remove_lost(ParticleSet<Dim>& set);
   void sort(ParticleSet<Dim>& set, std::span<const Vec<Dim>> at);
-  void build_list(const std::pair<std::string, std::string>& key, NeighborList& list, std::span<const Vec<Dim>> at);
+  void build_list(const std::pair<std::string, std::string>& key, NeighborList& list,
+                  std::span<const Vec<Dim>> at);
   double reach() const;
 
   const Model& model_;

@@ -7,11 +7,11 @@ namespace sphgeo {
 
 namespace {
 
-constexpr double safe = 1.25, unsafe = 3;              ///< Roache's factors: three levels, fewer
+constexpr double safe = 1.25, unsafe = 3;               ///< Roache's factors: three levels, fewer
 constexpr double least_order = 0.5, largest_order = 4;  ///< outside of these no level is asymptotic
 
-/// The observed order of three values by the fixed point of Celik's Eqs. 5: the ratios of the spacings need
-/// not be equal. Empty when it does not settle.
+/// The observed order of three values by the fixed point of Celik's Eqs. 5: the ratios of the
+/// spacings need not be equal. Empty when it does not settle.
 std::optional<double> order_of_values(const Level& coarse, const Level& middle, const Level& fine) {
   const double r21 = middle.spacing / fine.spacing, r32 = coarse.spacing / middle.spacing;
   const double e21 = middle.value - fine.value, e32 = coarse.value - middle.value;
@@ -28,7 +28,9 @@ std::optional<double> order_of_values(const Level& coarse, const Level& middle, 
 }
 
 /// Rounding is no change.
-bool same(double a, double b) { return std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b)); }
+bool same(double a, double b) {
+  return std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
+}
 
 }  // namespace
 
@@ -85,9 +87,10 @@ Convergence convergence(std::span<const Level> levels) {
       c.uncertainty = safe * (most - least) / 2;
     } else {
       const double r32 = coarse.spacing / middle.spacing;
-      const std::optional<double> p = e21 != 0 && e32 != 0 ? order_of_values(coarse, middle, fine) : std::nullopt;
-      // Values with an order of zero, falling without end, have these ratios; Celik's formula takes an absolute
-      // value and cannot tell what diverges.
+      const std::optional<double> p =
+          e21 != 0 && e32 != 0 ? order_of_values(coarse, middle, fine) : std::nullopt;
+      // Values with an order of zero, falling without end, have these ratios; Celik's formula takes
+      // an absolute value and cannot tell what diverges.
       const bool shrinks = std::abs(e32) * std::log(ratio) > std::abs(e21) * std::log(r32);
       if (p && shrinks && *p >= least_order && *p <= largest_order) {
         c.label = "monotone";

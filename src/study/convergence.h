@@ -1,5 +1,6 @@
 #pragma once
-// How a result changes with the spacing: observed order, Richardson's value, grid convergence index.
+// How a result changes with the spacing: observed order, Richardson's value, grid convergence
+// index.
 
 #include <optional>
 #include <span>
@@ -25,14 +26,15 @@ struct Convergence {
   std::string label;
 };
 
-/// The levels coarsest first, with different spacings. With three or more levels the safety factor is
-/// 1.25 when they converge in a monotone way with an order between 0.5 and 4. Oscillating values have half
-/// of their range, times that factor, for uncertainty (Stern et al. 2001), and no order of their own. In
-/// all other cases the factor is 3 and the order that of the errors if they have one between 0.5 and 2, else 1.
+/// The levels coarsest first, with different spacings. With three or more levels the safety factor
+/// is 1.25 when they converge in a monotone way with an order between 0.5 and 4. Oscillating values
+/// have half of their range, times that factor, for uncertainty (Stern et al. 2001), and no order
+/// of their own. In all other cases the factor is 3 and the order that of the errors if they have
+/// one between 0.5 and 2, else 1.
 Convergence convergence(std::span<const Level> levels);
 
-/// The exponent p of error = c * spacing^p by least squares in logarithms; empty with fewer than two errors
-/// above zero.
+/// The exponent p of error = c * spacing^p by least squares in logarithms; empty with fewer than
+/// two errors above zero.
 std::optional<double> order_of_errors(std::span<const Level> levels);
 
 }  // namespace sphgeo

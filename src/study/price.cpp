@@ -11,14 +11,17 @@ namespace sphgeo {
 
 namespace {
 
-/// The smallest number 1, 2, 3 or 5 times a power of ten that is not below x; `lower`: the largest not above it.
+/// The smallest number 1, 2, 3 or 5 times a power of ten that is not below x; `lower`: the largest
+/// not above it.
 double round_number(double x, bool lower) {
   const double decade = std::pow(10, std::floor(std::log10(x)));
   constexpr double steps[] = {1, 2, 3, 5, 10};
   double best = lower ? decade : 10 * decade;
   for (const double s : steps) {
     const double candidate = s * decade;
-    if (lower ? candidate <= x * (1 + 1e-12) && candidate > best : candidate >= x * (1 - 1e-12) && candidate < best) best = candidate;
+    if (lower ? candidate <= x * (1 + 1e-12) && candidate > best
+              : candidate >= x * (1 - 1e-12) && candidate < best)
+      best = candidate;
   }
   return best;
 }
@@ -41,7 +44,9 @@ struct PowerLaw {
   double operator()(double h) const { return y1 * std::pow(h / h1, exponent); }
 };
 
-PowerLaw law(double h1, double y1, double h2, double y2) { return {h1, y1, std::log(y2 / y1) / std::log(h2 / h1)}; }
+PowerLaw law(double h1, double y1, double h2, double y2) {
+  return {h1, y1, std::log(y2 / y1) / std::log(h2 / h1)};
+}
 
 struct Point {
   double h, error, wall;
@@ -68,18 +73,22 @@ std::vector<bool> worth_their_time(std::span<const Offer> offers) {
 std::string price_of_spacing(std::span<const Offer> offers, const ErrorScale& scale) {
   std::vector<Point> points;
   for (const Offer& o : offers)
-    if (o.error && std::isfinite(*o.error) && o.wall_s > 0) points.push_back({o.spacing, *o.error, o.wall_s});
-  if (points.size() < 2) return "one run with an error is no ladder: nothing can be said about its price";
+    if (o.error && std::isfinite(*o.error) && o.wall_s > 0)
+      points.push_back({o.spacing, *o.error, o.wall_s});
+  if (points.size() < 2)
+    return "one run with an error is no ladder: nothing can be said about its price";
   const Point first = points.front(), last = points.back();
   const std::string against = scale.reference.empty() ? "" : " against " + scale.reference;
   if (!(last.error < first.error) || !(last.error > 0)) {
-    std::string text = fmt::format("the error{} does not fall: {} at dp {:g} ({}), {} at dp {:g} ({})", against, error_text(first.error, scale), first.h,
-                                   about(first.wall), error_text(last.error, scale), last.h, about(last.wall));
+    std::string text =
+        fmt::format("the error{} does not fall: {} at dp {:g} ({}), {} at dp {:g} ({})", against,
+                    error_text(first.error, scale), first.h, about(first.wall),
+                    error_text(last.error, scale), last.h, about(last.wall));
     return text;
   }
-  // Beyond the finest run: the order of all errors, and the growth of time between the two finest runs, where
-  // the time of the start counts least.
-  // More than second order is luck at one spacing, not a property of the kernel sums.
+  // Beyond the finest run: the order of all errors, and the growth of time between the two finest
+  // runs, where the time of the start counts least. More than second order is luck at one spacing,
+  // not a property of the kernel sums.
   PowerLaw error_law = law(last.h, last.error, first.h, first.error);
   const bool lucky = error_law.exponent > 2;
   error_law.exponent = std::min(error_law.exponent, 2.0);
@@ -102,24 +111,28 @@ std::string price_of_spacing(std::span<const Offer> offers, const ErrorScale& sc
   };
   const auto wall_for = [&](double h) {
     for (std::size_t k = 1; k < points.size(); ++k)
-      if (h >= points[k].h) return law(points[k].h, points[k].wall, points[k - 1].h, points[k - 1].wall)(h);
+      if (h >= points[k].h)
+        return law(points[k].h, points[k].wall, points[k - 1].h, points[k - 1].wall)(h);
     return time_law(h);
   };
 
-  std::vector<double> wanted = {round_number(last.error, false), round_number(last.error / 2, true)};
+  std::vector<double> wanted = {round_number(last.error, false),
+                                round_number(last.error / 2, true)};
   if (scale.tolerance > 0) wanted.push_back(scale.tolerance);
   std::sort(wanted.begin(), wanted.end(), std::greater<>());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
   std::vector<std::string> said;
   for (const double error : wanted) {
-    const std::string what = error_text(error, scale) + (error == scale.tolerance ? " (the deck's tolerance)" : "");
+    const std::string what =
+        error_text(error, scale) + (error == scale.tolerance ? " (the deck's tolerance)" : "");
     const std::optional<double> h = spacing_for(error);
-    if (!h)
-      said.push_back(what + " is out of reach of these runs");
+    if (!h) said.push_back(what + " is out of reach of these runs");
     else if (*h >= first.h)
-      said.push_back(fmt::format("{} is met by the coarsest, dp {:.3g} ({})", what, first.h, about(first.wall)));
+      said.push_back(fmt::format("{} is met by the coarsest, dp {:.3g} ({})", what, first.h,
+                                 about(first.wall)));
     else
-      said.push_back(fmt::format("{} needs {}dp {:.2g} ({})", what, *h < last.h ? "about " : "", *h, about(wall_for(*h))));
+      said.push_back(fmt::format("{} needs {}dp {:.2g} ({})", what, *h < last.h ? "about " : "", *h,
+                                 about(wall_for(*h))));
   }
   std::string text;
   for (const std::string& s : said) text += (text.empty() ? "" : "; ") + s;
@@ -131,12 +144,16 @@ std::string price_of_settings(std::span<const Offer> offers, const ErrorScale& s
   const Offer *cheapest = nullptr, *best = nullptr;
   for (const Offer& o : offers) {
     if (!o.error) continue;
-    text += fmt::format("{}{}: {} in {}", text.empty() ? "" : "; ", o.setting, error_text(*o.error, scale), about(o.wall_s).substr(6));
+    text += fmt::format("{}{}: {} in {}", text.empty() ? "" : "; ", o.setting,
+                        error_text(*o.error, scale), about(o.wall_s).substr(6));
     if (!best || *o.error < *best->error) best = &o;
-    if (scale.tolerance > 0 && *o.error <= scale.tolerance && (!cheapest || o.wall_s < cheapest->wall_s)) cheapest = &o;
+    if (scale.tolerance > 0 && *o.error <= scale.tolerance &&
+        (!cheapest || o.wall_s < cheapest->wall_s))
+      cheapest = &o;
   }
   if (!best) return "no run has an error";
-  if (cheapest) return text + fmt::format("; the cheapest within tolerance is {}", cheapest->setting);
+  if (cheapest)
+    return text + fmt::format("; the cheapest within tolerance is {}", cheapest->setting);
   return text + fmt::format("; the most accurate is {}", best->setting);
 }
 

@@ -15,8 +15,13 @@ using Json = nlohmann::ordered_json;
 
 RecordedResult recorded(const Json& row) {
   const Json& pass = value_at(row, "/pass");
-  return {text_at(row, "/name"), number_at(row, "/value"), number_at(row, "/reference"), number_at(row, "/error"), number_at(row, "/tolerance").value_or(0),
-          pass.is_boolean() && pass.get<bool>(), text_at(row, "/note")};
+  return {text_at(row, "/name"),
+          number_at(row, "/value"),
+          number_at(row, "/reference"),
+          number_at(row, "/error"),
+          number_at(row, "/tolerance").value_or(0),
+          pass.is_boolean() && pass.get<bool>(),
+          text_at(row, "/note")};
 }
 
 /// The runs of a curve that say something about the claim; coarsest first where spacings differ.
@@ -30,9 +35,11 @@ StudyResult gather(const Study& study, const StudyCurve& curve, const StudyClaim
     if (run.record.status == "done" && r != nullptr && r->value) result.runs.push_back(&run);
   }
   std::vector<const StudyRun*> sorted = result.runs;
-  std::stable_sort(sorted.begin(), sorted.end(), [](const StudyRun* a, const StudyRun* b) { return a->spacing > b->spacing; });
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const StudyRun* a, const StudyRun* b) { return a->spacing > b->spacing; });
   const auto equal = [](const StudyRun* a, const StudyRun* b) { return a->spacing == b->spacing; };
-  result.by_spacing = sorted.size() > 1 && std::adjacent_find(sorted.begin(), sorted.end(), equal) == sorted.end();
+  result.by_spacing =
+      sorted.size() > 1 && std::adjacent_find(sorted.begin(), sorted.end(), equal) == sorted.end();
   if (result.by_spacing) result.runs = sorted;
   for (const StudyRun* run : result.runs) result.values.push_back(*run->record.result(claim.name));
   return result;
@@ -40,7 +47,8 @@ StudyResult gather(const Study& study, const StudyCurve& curve, const StudyClaim
 
 void judge(StudyResult& result, const StudyClaim& claim) {
   const auto& values = result.values;
-  const bool known = std::any_of(values.begin(), values.end(), [](const RecordedResult& r) { return r.error.has_value(); });
+  const bool known = std::any_of(values.begin(), values.end(),
+                                 [](const RecordedResult& r) { return r.error.has_value(); });
   if (known) {
     for (const RecordedResult& r : values) result.errors.push_back(r.error);
     result.error_against = "the reference";
@@ -48,7 +56,8 @@ void judge(StudyResult& result, const StudyClaim& claim) {
     // The finest run has no error that it could tell itself.
     const double finest = *values.back().value;
     const double unit = claim.relative && finest != 0 ? std::abs(finest) : 1;
-    for (const RecordedResult& r : values) result.errors.emplace_back(std::abs(*r.value - finest) / unit);
+    for (const RecordedResult& r : values)
+      result.errors.emplace_back(std::abs(*r.value - finest) / unit);
     result.errors.back().reset();
     result.error_against = "the finest run";
   } else {
@@ -57,9 +66,11 @@ void judge(StudyResult& result, const StudyClaim& claim) {
   if (!result.by_spacing) return;
   std::vector<Level> levels;
   for (std::size_t k = 0; k < values.size(); ++k)
-    levels.push_back({result.runs[k]->spacing, *values[k].value, known ? result.errors[k] : std::nullopt});
+    levels.push_back(
+        {result.runs[k]->spacing, *values[k].value, known ? result.errors[k] : std::nullopt});
   result.convergence = convergence(levels);
-  if (claim.norm || values.back().reference == 0.0) result.convergence.gci.reset();  // a share of an error that goes to zero means nothing
+  if (claim.norm || values.back().reference == 0.0)
+    result.convergence.gci.reset();  // a share of an error that goes to zero means nothing
 }
 
 Offer offer(const StudyResult& result, std::size_t k) {
@@ -70,8 +81,11 @@ Offer offer(const StudyResult& result, std::size_t k) {
 void price(StudyResult& result, const StudyClaim& claim) {
   std::vector<Offer> offers;
   for (std::size_t k = 0; k < result.runs.size(); ++k) offers.push_back(offer(result, k));
-  const ErrorScale scale{claim.relative, result.error_against == "the reference" ? claim.tolerance : 0, result.error_against};
-  result.price = result.by_spacing ? price_of_spacing(offers, scale) : price_of_settings(offers, scale);
+  const ErrorScale scale{claim.relative,
+                         result.error_against == "the reference" ? claim.tolerance : 0,
+                         result.error_against};
+  result.price =
+      result.by_spacing ? price_of_spacing(offers, scale) : price_of_settings(offers, scale);
 }
 
 /// Marks the Pareto front of all curves of one claim.
@@ -137,8 +151,11 @@ std::vector<StudyResult> study_results(const Study& study) {
     }
     // Errors against different runs cannot be compared.
     const std::span<StudyResult> curves = std::span(results).subspan(first);
-    const bool common = std::all_of(curves.begin(), curves.end(), [](const StudyResult& r) { return r.error_against == "the reference"; });
-    for (std::size_t k = 0; k < curves.size(); k += common ? curves.size() : 1) mark_front(curves.subspan(k, common ? curves.size() : 1));
+    const bool common = std::all_of(curves.begin(), curves.end(), [](const StudyResult& r) {
+      return r.error_against == "the reference";
+    });
+    for (std::size_t k = 0; k < curves.size(); k += common ? curves.size() : 1)
+      mark_front(curves.subspan(k, common ? curves.size() : 1));
   }
   return results;
 }

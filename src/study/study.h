@@ -52,15 +52,17 @@ struct StudyClaim {
   std::string name;
   bool relative = true;  ///< errors are shares (of the reference or of a curve's range)
   double tolerance = 0;
-  bool norm = false;     ///< the value is an error itself (a curve's norm, what must stay below a bound)
+  bool norm =
+      false;  ///< the value is an error itself (a curve's norm, what must stay below a bound)
 };
 
 /// One result along one curve.
 struct StudyResult {
   std::string name;
   const StudyCurve* curve = nullptr;
-  std::vector<const StudyRun*> runs;  ///< done and with a value; coarsest first where spacings differ
-  std::vector<RecordedResult> values; ///< of these runs
+  std::vector<const StudyRun*>
+      runs;  ///< done and with a value; coarsest first where spacings differ
+  std::vector<RecordedResult> values;  ///< of these runs
   std::vector<std::optional<double>> errors;
   std::string error_against;  ///< "the reference", "the finest run", or empty
   bool by_spacing = false;    ///< whether all spacings differ, so that there is an order
@@ -92,8 +94,8 @@ std::string convergence_text(const Convergence& convergence);
 /// study.json.
 nlohmann::ordered_json to_json(const Study& study, const std::vector<StudyResult>& results);
 
-/// A page that needs no other file: for each result its errors against the time they took, with the Pareto front, and
-/// its table; then the runs.
+/// A page that needs no other file: for each result its errors against the time they took, with the
+/// Pareto front, and its table; then the runs.
 std::string study_page(const Study& study, const std::vector<StudyResult>& results);
 
 /// Tables and sentences for the terminal.

@@ -16,7 +16,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(const std::optional<double>& value) { return value && std::isfinite(*value) ? Json(*value) : Json(nullptr); }
+Json number(const std::optional<double>& value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
 
 /// A setting as a number where it is one.
 Json setting_json(const std::string& text) {
@@ -30,14 +32,19 @@ Json settings_json(const std::vector<Setting>& settings) {
   return out;
 }
 
-std::string cell(const std::optional<double>& value) { return value ? fmt::format("{:.6g}", *value) : "-"; }
+std::string cell(const std::optional<double>& value) {
+  return value ? fmt::format("{:.6g}", *value) : "-";
+}
 
-std::string wall_text(double seconds) { return seconds < 10 ? fmt::format("{:.2f} s", seconds) : duration_text(seconds); }
+std::string wall_text(double seconds) {
+  return seconds < 10 ? fmt::format("{:.2f} s", seconds) : duration_text(seconds);
+}
 
 }  // namespace
 
 const StudyClaim& claim_of(const Study& study, const std::string& name) {
-  return *std::find_if(study.claims.begin(), study.claims.end(), [&](const StudyClaim& c) { return c.name == name; });
+  return *std::find_if(study.claims.begin(), study.claims.end(),
+                       [&](const StudyClaim& c) { return c.name == name; });
 }
 
 std::string error_cell(const std::optional<double>& error, bool relative) {
@@ -69,14 +76,18 @@ Json to_json(const Study& study, const std::vector<StudyResult>& results) {
   out["runs"] = Json::array();
   for (const StudyRun& run : study.runs) {
     const RunOutcome& r = run.record;
-    Json row = {{"settings", settings_json(run.settings)}, {"folder", run.folder}, {"resolution", run.spacing}, {"status", r.status}};
+    Json row = {{"settings", settings_json(run.settings)},
+                {"folder", run.folder},
+                {"resolution", run.spacing},
+                {"status", r.status}};
     if (!r.message.empty()) row["message"] = r.message;
     row["wall_s"] = r.wall_s;
     row["threads"] = r.threads;
     row["particles"] = r.particles;
     row["acoustic_steps"] = r.acoustic_steps;
     row["memory_peak_bytes"] = r.memory_bytes;
-    row["forecast"] = {{"wall_s", number(r.forecast_wall_s)}, {"memory_bytes", number(r.forecast_memory_bytes)}};
+    row["forecast"] = {{"wall_s", number(r.forecast_wall_s)},
+                       {"memory_bytes", number(r.forecast_memory_bytes)}};
     out["runs"].push_back(std::move(row));
   }
   out["results"] = Json::array();
@@ -120,24 +131,31 @@ std::string render_study(const Study& study, const std::vector<StudyResult>& res
   std::string out;
   for (const StudyRun& run : study.runs)
     if (run.record.status != "done")
-      out += fmt::format("{}: {}{}{}\n", printable(settings_text(run.settings)), run.record.status, run.record.message.empty() ? "" : ": ",
-                         printable(run.record.message));
+      out += fmt::format("{}: {}{}{}\n", printable(settings_text(run.settings)), run.record.status,
+                         run.record.message.empty() ? "" : ": ", printable(run.record.message));
   for (const StudyResult& r : results) {
     const StudyClaim& claim = claim_of(study, r.name);
     out += fmt::format("\n{}", printable(r.name));
-    if (r.values.front().reference) out += fmt::format(", reference {:.6g}", *r.values.front().reference);
-    if (claim.tolerance > 0) out += fmt::format(", tolerance {}", error_cell(claim.tolerance, claim.relative));
+    if (r.values.front().reference)
+      out += fmt::format(", reference {:.6g}", *r.values.front().reference);
+    if (claim.tolerance > 0)
+      out += fmt::format(", tolerance {}", error_cell(claim.tolerance, claim.relative));
     if (!r.curve->others.empty()) out += ", " + printable(settings_text(r.curve->others));
     if (!r.error_against.empty()) out += "; errors against " + r.error_against;
-    out += fmt::format("\n  {:>14}  {:>9}  {:>11}  {:>10}  {:>5}  {:>11}  {:>11}  {:>10}  {:>9}  {:>9}\n", shortened(printable(r.curve->key), 14), "dp [m]", "value",
-                       "error", "", "wall time", "forecast", "particles", "steps", "memory");
+    out += fmt::format(
+        "\n  {:>14}  {:>9}  {:>11}  {:>10}  {:>5}  {:>11}  {:>11}  {:>10}  {:>9}  {:>9}\n",
+        shortened(printable(r.curve->key), 14), "dp [m]", "value", "error", "", "wall time",
+        "forecast", "particles", "steps", "memory");
     for (std::size_t k = 0; k < r.runs.size(); ++k) {
       const StudyRun& run = *r.runs[k];
       const RunOutcome& record = run.record;
-      out += fmt::format("  {:>14}  {:>9.4g}  {:>11}  {:>10}  {:>5}  {:>11}  {:>11}  {:>10}  {:>9}  {:>9}{}\n", shortened(printable(setting_of(run, r.curve->key)), 14),
-                         run.spacing, cell(r.values[k].value), error_cell(r.errors[k], claim.relative), r.values[k].pass ? "pass" : "FAIL",
-                         wall_text(record.wall_s), record.forecast_wall_s ? wall_text(*record.forecast_wall_s) : "-", record.particles,
-                         record.acoustic_steps, bytes_text(record.memory_bytes), r.worth[k] ? "  *" : "");
+      out += fmt::format(
+          "  {:>14}  {:>9.4g}  {:>11}  {:>10}  {:>5}  {:>11}  {:>11}  {:>10}  {:>9}  {:>9}{}\n",
+          shortened(printable(setting_of(run, r.curve->key)), 14), run.spacing,
+          cell(r.values[k].value), error_cell(r.errors[k], claim.relative),
+          r.values[k].pass ? "pass" : "FAIL", wall_text(record.wall_s),
+          record.forecast_wall_s ? wall_text(*record.forecast_wall_s) : "-", record.particles,
+          record.acoustic_steps, bytes_text(record.memory_bytes), r.worth[k] ? "  *" : "");
     }
     if (r.by_spacing) out += "  " + convergence_text(r.convergence) + "\n";
     out += "  " + r.price + "\n";

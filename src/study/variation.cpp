@@ -18,7 +18,8 @@ std::size_t add_run(StudyDesign& design, std::vector<Setting> settings) {
 }
 
 /// Adds a curve along `along` for every combination of the variations from `next` on.
-void combine(StudyDesign& design, const Variation& along, const std::vector<Variation>& all, std::size_t next, std::vector<Setting> others) {
+void combine(StudyDesign& design, const Variation& along, const std::vector<Variation>& all,
+             std::size_t next, std::vector<Setting> others) {
   if (next < all.size()) {
     for (const std::string& value : all[next].values) {
       std::vector<Setting> more = others;
@@ -40,7 +41,8 @@ void combine(StudyDesign& design, const Variation& along, const std::vector<Vari
 
 Variation parse_variation(const std::string& text) {
   const auto refuse = [&](const std::string& why) {
-    return Error(ExitCode::usage, "--vary '" + printable(text) + "': " + why + "; expected KEY=VALUE,VALUE...");
+    return Error(ExitCode::usage,
+                 "--vary '" + printable(text) + "': " + why + "; expected KEY=VALUE,VALUE...");
   };
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) throw refuse("there is no key with values");
@@ -51,7 +53,8 @@ Variation parse_variation(const std::string& text) {
   const auto take = [&] {
     const std::string whole(trimmed(value));
     if (whole.empty()) throw refuse("a value is missing");
-    if (std::find(v.values.begin(), v.values.end(), whole) != v.values.end()) throw refuse("'" + whole + "' stands there twice");
+    if (std::find(v.values.begin(), v.values.end(), whole) != v.values.end())
+      throw refuse("'" + whole + "' stands there twice");
     v.values.push_back(whole);
     value.clear();
   };

@@ -13,7 +13,8 @@ struct Variation {
   std::vector<std::string> values;
 };
 
-/// Reads "resolution=0.04,0.02"; commas within brackets and quotes belong to a value. Throws Error (usage).
+/// Reads "resolution=0.04,0.02"; commas within brackets and quotes belong to a value. Throws Error
+/// (usage).
 Variation parse_variation(const std::string& text);
 
 /// A key and its value, as written.

@@ -12,11 +12,15 @@ using namespace sphgeo;
 namespace {
 
 Model deck(int dimension, const std::string& boundary) {
-  return read_deck_text("dimension: " + std::to_string(dimension) +
-                        "\nresolution: 0.1\nend_time: 1\nmaterials: [{name: water, type: water}]\nboundaries:\n  - " + boundary + "\n");
+  return read_deck_text(
+      "dimension: " + std::to_string(dimension) +
+      "\nresolution: 0.1\nend_time: 1\nmaterials: [{name: water, type: water}]\nboundaries:\n  - " +
+      boundary + "\n");
 }
 
-const WallBoundary& wall_of(const Model& model) { return dynamic_cast<const WallBoundary&>(*model.boundaries[0]); }
+const WallBoundary& wall_of(const Model& model) {
+  return dynamic_cast<const WallBoundary&>(*model.boundaries[0]);
+}
 
 constexpr double dp = 0.1;
 Placement placement(int dimension) { return {dp, 0.36, dimension, {}}; }
@@ -36,7 +40,8 @@ WallPoint at(const std::vector<WallPoint>& points, const Vec3& place) {
 TEST_SUITE("boundaries") {
   TEST_CASE("the particles of a tank stand on its faces whatever its size") {
     // 0.47 and 0.33 are no multiples of 0.1; the floor is at -0.02.
-    const Model m = deck(2, "{name: tank, type: tank, min: [0.01, 0, -0.02], max: [0.48, 1, 0.31]}");
+    const Model m =
+        deck(2, "{name: tank, type: tank, min: [0.01, 0, -0.02], max: [0.48, 1, 0.31]}");
     const auto points = wall_of(m).points(placement(2));
     const Vec3 lo(0.01, 0, -0.02), hi(0.48, 0, 0.31);
     double left = -1e9, right = 1e9, floor = -1e9, lid = 1e9;
@@ -67,7 +72,8 @@ TEST_SUITE("boundaries") {
   }
 
   TEST_CASE("open faces have no wall, neither beside nor above them") {
-    const Model m = deck(2, "{name: tank, type: tank, min: [0, 0, 0], max: [0.5, 1, 0.3], open: [top, right]}");
+    const Model m =
+        deck(2, "{name: tank, type: tank, min: [0, 0, 0], max: [0.5, 1, 0.3], open: [top, right]}");
     const auto points = wall_of(m).points(placement(2));
     for (const WallPoint& p : points) {
       CHECK(p.position.z() < 0.3);
@@ -77,7 +83,8 @@ TEST_SUITE("boundaries") {
   }
 
   TEST_CASE("a tank in 3D has four layers on every closed face") {
-    const Model m = deck(3, "{name: tank, type: tank, min: [0, 0, 0], max: [0.5, 0.4, 0.3], open: [top, front]}");
+    const Model m = deck(
+        3, "{name: tank, type: tank, min: [0, 0, 0], max: [0.5, 0.4, 0.3], open: [top, front]}");
     const auto points = wall_of(m).points(placement(3));
     CHECK(points.size() == 13 * 8 * 7 - 5 * 4 * 3);
     CHECK(near(at(points, {0.25, 0.45, 0.15}).normal, {0, -1, 0}));
@@ -92,10 +99,12 @@ TEST_SUITE("boundaries") {
 
   TEST_CASE("the solid of a tank holds its particles and nothing of the inside") {
     for (const int dimension : {2, 3}) {
-      const Model m = deck(dimension, "{name: tank, type: tank, min: [0, 0, 0], max: [0.5, 0.4, 0.3], open: [top]}");
+      const Model m = deck(
+          dimension, "{name: tank, type: tank, min: [0, 0, 0], max: [0.5, 0.4, 0.3], open: [top]}");
       const auto solid = wall_of(m).solid(placement(dimension));
       REQUIRE(solid);
-      for (const WallPoint& p : wall_of(m).points(placement(dimension))) CHECK(solid->signed_distance(p.position) < 0);
+      for (const WallPoint& p : wall_of(m).points(placement(dimension)))
+        CHECK(solid->signed_distance(p.position) < 0);
       const double y = dimension == 2 ? 0 : 0.2;
       CHECK(solid->signed_distance({0.25, y, 0.15}) > 0);
       CHECK(solid->signed_distance({0.25, y, 0.5}) > 0);
@@ -104,7 +113,8 @@ TEST_SUITE("boundaries") {
   }
 
   TEST_CASE("a wall of any shape is filled as deep as a kernel reaches, with normals outwards") {
-    const Model m = deck(2, "{name: block, type: wall, shape: {type: box, min: [0, 0, 0], max: [2, 1, 1]}}");
+    const Model m =
+        deck(2, "{name: block, type: wall, shape: {type: box, min: [0, 0, 0], max: [2, 1, 1]}}");
     const auto points = wall_of(m).points(placement(2));
     // Cells 0.05, 0.15 ... deeper than 0.36 are left out: 12 by 2 of 20 by 10.
     CHECK(points.size() == 20 * 10 - 12 * 2);
@@ -112,7 +122,8 @@ TEST_SUITE("boundaries") {
     CHECK(near(at(points, {1.95, 0, 0.55}).normal, {1, 0, 0}));
     CHECK(near(at(points, {1.05, 0, 0.95}).normal, {0, 0, 1}));
     CHECK(near(at(points, {1.05, 0, 0.25}).normal, {0, 0, -1}));
-    const Model ball = deck(3, "{name: ball, type: wall, shape: {type: sphere, center: [0, 0, 0], radius: 0.5}}");
+    const Model ball =
+        deck(3, "{name: ball, type: wall, shape: {type: sphere, center: [0, 0, 0], radius: 0.5}}");
     const auto round = wall_of(ball).points(placement(3));
     CHECK(round.size() > 300);
     for (const WallPoint& p : round) {
@@ -123,17 +134,24 @@ TEST_SUITE("boundaries") {
   }
 
   TEST_CASE("walls stick unless they are told to slip, and rest unless they are told to move") {
-    const Model m = deck(2, "{name: block, type: wall, shape: {type: box, min: [0, 0, 0], max: [2, 1, 1]}}");
+    const Model m =
+        deck(2, "{name: block, type: wall, shape: {type: box, min: [0, 0, 0], max: [2, 1, 1]}}");
     CHECK(wall_of(m).slip_kind() == Slip::no_slip);
     CHECK_FALSE(wall_of(m).motion.has_value());
-    const Model s = deck(2, "{name: block, type: wall, slip: free_slip, shape: {type: box, min: [0, 0, 0], max: [2, 1, 1]}}");
+    const Model s = deck(2,
+                         "{name: block, type: wall, slip: free_slip, shape: {type: box, min: [0, "
+                         "0, 0], max: [2, 1, 1]}}");
     CHECK(wall_of(s).slip_kind() == Slip::free_slip);
   }
 
   TEST_CASE("a tank without extent is refused, its y is ignored in 2D") {
-    CHECK_THROWS_AS(deck(2, "{name: tank, type: tank, min: [0, 0, 0], max: [0, 1, 0.3]}"), DeckError);
-    CHECK_THROWS_AS(deck(3, "{name: tank, type: tank, min: [0, 0, 0], max: [1, 0, 0.3]}"), DeckError);
+    CHECK_THROWS_AS(deck(2, "{name: tank, type: tank, min: [0, 0, 0], max: [0, 1, 0.3]}"),
+                    DeckError);
+    CHECK_THROWS_AS(deck(3, "{name: tank, type: tank, min: [0, 0, 0], max: [1, 0, 0.3]}"),
+                    DeckError);
     CHECK_NOTHROW(deck(2, "{name: tank, type: tank, min: [0, 0, 0], max: [1, 0, 0.3]}"));
-    CHECK_THROWS_AS(deck(2, "{name: tank, type: tank, min: [0, 0, 0], max: [1, 0, 0.3], open: [lid]}"), DeckError);
+    CHECK_THROWS_AS(
+        deck(2, "{name: tank, type: tank, min: [0, 0, 0], max: [1, 0, 0.3], open: [lid]}"),
+        DeckError);
   }
 }

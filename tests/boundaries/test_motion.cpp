@@ -15,10 +15,13 @@ using namespace sphgeo;
 namespace {
 
 Motion motion(const std::string& text, int dimension = 3, const std::string& folder = ".") {
-  const Model m = read_deck_text("dimension: " + std::to_string(dimension) +
-                                 "\nresolution: 0.1\nend_time: 1\nmaterials: [{name: water, type: water}]\nboundaries:\n"
-                                 "  - {name: gate, type: wall, shape: {type: box, min: [0, 0, 0], max: [1, 1, 1]}, motion: " + text + "}\n",
-                                 {}, "deck", folder);
+  const Model m = read_deck_text(
+      "dimension: " + std::to_string(dimension) +
+          "\nresolution: 0.1\nend_time: 1\nmaterials: [{name: water, type: water}]\nboundaries:\n"
+          "  - {name: gate, type: wall, shape: {type: box, min: [0, 0, 0], max: [1, 1, 1]}, "
+          "motion: " +
+          text + "}\n",
+      {}, "deck", folder);
   return *dynamic_cast<const WallBoundary&>(*m.boundaries[0]).motion;
 }
 
@@ -35,7 +38,9 @@ bool near(const Vec3& a, const Vec3& b, double tolerance) {
 struct Table {
   test::TemporaryFolder folder;
   explicit Table(const std::string& text) { std::ofstream(folder / "gate.csv") << text; }
-  Motion motion(const std::string& more = "") const { return ::motion("{table: gate.csv" + more + "}", 3, folder.path()); }
+  Motion motion(const std::string& more = "") const {
+    return ::motion("{table: gate.csv" + more + "}", 3, folder.path());
+  }
 };
 
 }  // namespace
@@ -73,7 +78,8 @@ TEST_SUITE("boundaries") {
     const double t = 0.8;
     CHECK(near(m.position({2, 0, 1}, t), {2 * std::cos(t), 0, 1 - 2 * std::sin(t) + 3 * t}, 1e-14));
     CHECK(near(m.velocity({2, 0, 1}, t), {-2 * std::sin(t), 0, -2 * std::cos(t) + 3}, 1e-6));
-    CHECK(m.max_speed({2, 0, 1}, 1.0) == doctest::Approx(std::sqrt(4 + 9 - 12 * std::cos(1.0))).epsilon(0.01));
+    CHECK(m.max_speed({2, 0, 1}, 1.0) ==
+          doctest::Approx(std::sqrt(4 + 9 - 12 * std::cos(1.0))).epsilon(0.01));
   }
 
   TEST_CASE("a table is met at its rows, and runs smoothly between them") {
@@ -88,12 +94,14 @@ TEST_SUITE("boundaries") {
     CHECK(near(m.velocity(Vec3::Zero(), 7), Vec3::Zero(), 1e-14));
     // A parabola is met to the accuracy of the rows.
     std::string rows = "t,angle\n";
-    for (int k = 0; k <= 20; ++k) rows += std::to_string(0.1 * k) + "," + std::to_string(0.01 * k * k) + "\n";
+    for (int k = 0; k <= 20; ++k)
+      rows += std::to_string(0.1 * k) + "," + std::to_string(0.01 * k * k) + "\n";
     const Motion turning = Table(rows).motion(", displacement: [t, 0, 0]");
     const double a = 0.77 * 0.77;
     CHECK(near(turning.position({1, 0, 0}, 0.77), {std::cos(a) + 0.77, 0, -std::sin(a)}, 1e-5));
     CHECK(near(turning.velocity({0, 0, 0}, 0.77), {1, 0, 0}, 1e-6));
-    CHECK(turning.velocity({1, 0, 0}, 0.77).z() == doctest::Approx(-1.54 * std::cos(a)).epsilon(1e-3));
+    CHECK(turning.velocity({1, 0, 0}, 0.77).z() ==
+          doctest::Approx(-1.54 * std::cos(a)).epsilon(1e-3));
   }
 
   TEST_CASE("tables whose times do not rise, or that are not there, are refused") {

@@ -88,7 +88,8 @@ TEST_CASE("what is no baseline, or a damaged one, is refused with its path") {
     }
     return false;
   };
-  for (const char* text : {"", "[]", "{}", "{\"kind\": 1}", "{\"kind\": \"sphgeo baseline 1\"}", "{\"kind\": \"sphgeo baseline 1\", \"title\": []}"}) {
+  for (const char* text : {"", "[]", "{}", "{\"kind\": 1}", "{\"kind\": \"sphgeo baseline 1\"}",
+                           "{\"kind\": \"sphgeo baseline 1\", \"title\": []}"}) {
     CAPTURE(text);
     CHECK(refused(text));
   }

@@ -36,7 +36,8 @@ RunData some_run() {
 }
 
 const Difference& find(const std::vector<Difference>& all, const std::string& name) {
-  const auto at = std::find_if(all.begin(), all.end(), [&](const Difference& d) { return d.whole_name() == name; });
+  const auto at = std::find_if(all.begin(), all.end(),
+                               [&](const Difference& d) { return d.whole_name() == name; });
   REQUIRE(at != all.end());
   return *at;
 }
@@ -60,7 +61,8 @@ TEST_CASE("a curve's difference is its root mean square by its range") {
   const auto all = compare_runs(run, some_run(), {});
   const Difference& d = find(all, "probe gauge.level");
   // The curve spans from its trough at t = 1, 1 + sin 10, to 2.
-  CHECK(d.difference == doctest::Approx(0.1 / (1 - std::sin(3 * std::acos(-1.0) / 2))).epsilon(0.001));
+  CHECK(d.difference ==
+        doctest::Approx(0.1 / (1 - std::sin(3 * std::acos(-1.0) / 2))).epsilon(0.001));
   CHECK_FALSE(d.pass);
   CHECK(all.front().whole_name() == "probe gauge.level");  // the worst comes first
 }
@@ -98,7 +100,8 @@ TEST_CASE("noise about zero beside a signal is measured by a hundredth of the si
     noise.column = "noise";
     for (double& y : noise.y) y = data == &run ? 1e-5 : -1e-5 * y;
     data->probes.push_back(noise);
-    data->sets[0].fields = {{"velocity.x", data->sets[0].fields[0].values}, {"velocity.z", std::vector<double>(50, 0)}};
+    data->sets[0].fields = {{"velocity.x", data->sets[0].fields[0].values},
+                            {"velocity.z", std::vector<double>(50, 0)}};
     data->sets[0].fields[1].values[7] = data == &run ? 1e-3 : 2e-3;
   }
   CHECK(all_pass(compare_runs(run, base, {})));
@@ -122,7 +125,9 @@ TEST_CASE("lost particles, another end, another ledger and a result that now fai
   CHECK(find(all, "ledger mass").difference == doctest::Approx(0.02));
 }
 
-TEST_CASE("a result that met its tolerance and misses it now fails whatever the tolerances, and so does a ledger that is no number") {
+TEST_CASE(
+    "a result that met its tolerance and misses it now fails whatever the tolerances, and so does "
+    "a ledger that is no number") {
   const Tolerances wide{1e9, 1e9, 1e9, 1e9, 0, 1e9, 1e9, {{"*", 1e300}}};
   RunData run = some_run();
   run.results[0].second.pass = false;

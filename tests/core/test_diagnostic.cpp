@@ -42,8 +42,12 @@ TEST_SUITE("core") {
 
   TEST_CASE("no part of a finding can drive a terminal, and the caret stands where it belongs") {
     Diagnostics found;
-    found.keep_source("d\x1B[2J", "\ta\xC2\x9B" "\x1B\xFF: v\x1B" "alue\xE2\x80\xAE\n");
-    found.error("E012", {"d\x1B[2J", 1, 9}, "a\x1B[31m", "unknown key 'a\nb\x07'", "did you mean '\x1B]0;x\xC3'?");
+    found.keep_source("d\x1B[2J",
+                      "\ta\xC2\x9B"
+                      "\x1B\xFF: v\x1B"
+                      "alue\xE2\x80\xAE\n");
+    found.error("E012", {"d\x1B[2J", 1, 9}, "a\x1B[31m", "unknown key 'a\nb\x07'",
+                "did you mean '\x1B]0;x\xC3'?");
     CHECK(found.render() ==
           "d?[2J:1:9: error[E012]: a?[31m: unknown key 'a?b?'\n"
           "    1 |  a???: v?alue?\n"

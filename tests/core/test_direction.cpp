@@ -20,7 +20,9 @@ TEST_SUITE("core") {
     CHECK(direction_of({1e300, 0, 1e-8}) == Vec3(1, 0, 0));
     CHECK(direction_of({1e8, -1e-300, 0}).y() == 0);
     for (std::uint64_t k = 0; k < 2000; ++k) {
-      const Vec3 once = direction_of(Vec3(random_uniform(1, k), random_uniform(2, k), random_uniform(3, k)) - Vec3::Constant(0.5));
+      const Vec3 once =
+          direction_of(Vec3(random_uniform(1, k), random_uniform(2, k), random_uniform(3, k)) -
+                       Vec3::Constant(0.5));
       CHECK(direction_of(once) == once);
     }
     CHECK((direction_of({-1e300, 1, 0}) - Vec3(-1, 0, 0)).norm() < 1e-15);

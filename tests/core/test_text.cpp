@@ -58,34 +58,43 @@ TEST_SUITE("core") {
   TEST_CASE("texts are cut between characters") {
     CHECK(shortened("abc", 3) == "abc");
     CHECK(shortened("abcd", 3) == "abc...");
-    CHECK(shortened("a\xC3\xA4" "b", 2) == "a...");
+    CHECK(shortened("a\xC3\xA4"
+                    "b",
+                    2) == "a...");
     CHECK(shortened("\xE6\xB0\xB4\xE6\xB0\xB4", 4) == "\xE6\xB0\xB4...");
     CHECK(shortened("\x80\x80\x80", 2) == "...");
   }
 
   TEST_CASE("bytes that are no UTF-8 are found") {
     constexpr auto none = std::string_view::npos;
-    CHECK(invalid_utf8("plain \xC3\xA4 \xE6\xB0\xB4 \xF0\x9F\x8C\x8A \xEF\xBF\xBF \xF4\x8F\xBF\xBF") == none);
+    CHECK(invalid_utf8(
+              "plain \xC3\xA4 \xE6\xB0\xB4 \xF0\x9F\x8C\x8A \xEF\xBF\xBF \xF4\x8F\xBF\xBF") ==
+          none);
     CHECK(invalid_utf8("") == none);
-    CHECK(invalid_utf8("ab\xF6" "d") == 2);
+    CHECK(invalid_utf8("ab\xF6"
+                       "d") == 2);
     CHECK(invalid_utf8("a\x80") == 1);
-    CHECK(invalid_utf8("a\xC3") == 1);              // cut short
-    CHECK(invalid_utf8("\xC0\xAF") == 0);          // longer than needed
+    CHECK(invalid_utf8("a\xC3") == 1);     // cut short
+    CHECK(invalid_utf8("\xC0\xAF") == 0);  // longer than needed
     CHECK(invalid_utf8("\xE0\x9F\xBF") == 0);
     CHECK(invalid_utf8("\xF0\x8F\xBF\xBF") == 0);
-    CHECK(invalid_utf8("\xED\xA0\x80") == 0);     // a surrogate
+    CHECK(invalid_utf8("\xED\xA0\x80") == 0);      // a surrogate
     CHECK(invalid_utf8("\xF4\x90\x80\x80") == 0);  // beyond U+10FFFF
     CHECK(invalid_utf8("\xFF\xFE") == 0);
   }
 
   TEST_CASE("nothing that a terminal obeys is printable") {
-    CHECK(printable("plain, \xC3\xA4 \xE6\xB0\xB4 \xF0\x9F\x8C\x8A") == "plain, \xC3\xA4 \xE6\xB0\xB4 \xF0\x9F\x8C\x8A");
+    CHECK(printable("plain, \xC3\xA4 \xE6\xB0\xB4 \xF0\x9F\x8C\x8A") ==
+          "plain, \xC3\xA4 \xE6\xB0\xB4 \xF0\x9F\x8C\x8A");
     CHECK(printable(std::string("a\x1B[31m\x07\x7F\r\0z", 11)) == "a?[31m????z");
     CHECK(printable("a\tb\nc") == "a b?c");
     CHECK(printable("a\tb\nc\x1B", "\n") == "a b\nc?");
-    CHECK(printable("\xC2\x9B" "31m \xC2\x85 \xC2\xA0") == "?31m ? \xC2\xA0");           // C1; a hard blank is none
-    CHECK(printable("\xE2\x80\xAEx\xE2\x81\xA6y\xE2\x80\xA8 \xE2\x80\x93") == "?x?y? \xE2\x80\x93");  // directions, not a dash
-    CHECK(printable("\x9B" "31m \xFF\xFE \xC3") == "?31m ?? ?");                     // no UTF-8
+    CHECK(printable("\xC2\x9B"
+                    "31m \xC2\x85 \xC2\xA0") == "?31m ? \xC2\xA0");  // C1; a hard blank is none
+    CHECK(printable("\xE2\x80\xAEx\xE2\x81\xA6y\xE2\x80\xA8 \xE2\x80\x93") ==
+          "?x?y? \xE2\x80\x93");  // directions, not a dash
+    CHECK(printable("\x9B"
+                    "31m \xFF\xFE \xC3") == "?31m ?? ?");  // no UTF-8
     CHECK(printable("") == "");
   }
 

@@ -15,7 +15,8 @@ resolution: 0.02
 end_time: 1
 materials: [{name: rock, type: rigid, density: 2000}]
 bodies:
-  - {name: sand, material: rock, around: )" + names + R"(, shape: {type: box, min: [0, 0, 0], max: [2, 0, 1]}}
+  - {name: sand, material: rock, around: )" +
+         names + R"(, shape: {type: box, min: [0, 0, 0], max: [2, 0, 1]}}
   - {name: post, material: rock, shape: {type: box, min: [1.8, 0, 0], max: [1.9, 0, 2]}}
   - name: stone
     material: rock
@@ -36,7 +37,8 @@ TEST_SUITE("deck") {
       for (double z = 0.01; z < 1; z += 0.02) {
         const Vec3 p(x, 0, z);
         bool taken = false;
-        for (std::size_t k = 1; k < 6; ++k) taken = taken || m.bodies[k].shape->signed_distance(p) < 0;
+        for (std::size_t k = 1; k < 6; ++k)
+          taken = taken || m.bodies[k].shape->signed_distance(p) < 0;
         CHECK((sand.bound(p) < 0) == !taken);
         ++(taken ? free : inside);
       }

@@ -11,7 +11,9 @@ using namespace sphgeo::sample;
 
 namespace {
 
-std::string rocks(int dimension, const std::string& copies, const std::string& shape = "{type: boulder, center: [1, 0, 1], radius: r, seed: 7}") {
+std::string rocks(
+    int dimension, const std::string& copies,
+    const std::string& shape = "{type: boulder, center: [1, 0, 1], radius: r, seed: 7}") {
   return "dimension: " + std::to_string(dimension) + R"(
 resolution: 0.02
 end_time: 1
@@ -21,15 +23,19 @@ bodies:
   - {name: one, material: rock, shape: {type: sphere, center: [9, 0, 0], radius: 0.1}}
   - name: stone
     material: rock
-    shape: )" + shape + "\n    copies: " + copies + "\n";
+    shape: )" +
+         shape + "\n    copies: " + copies + "\n";
 }
 
-const std::string twelve = "{count: 12, seed: 3, sizes: [0.5, 1.5], gap: 0.05, region: {type: box, min: [-1, -1, 0], max: [1, 1, 2]}}";
+const std::string twelve =
+    "{count: 12, seed: 3, sizes: [0.5, 1.5], gap: 0.05, region: {type: box, min: [-1, -1, 0], max: "
+    "[1, 1, 2]}}";
 
 }  // namespace
 
 TEST_SUITE("deck") {
-  TEST_CASE("copies: bodies of their own names, inside of the region, apart, and of several sizes") {
+  TEST_CASE(
+      "copies: bodies of their own names, inside of the region, apart, and of several sizes") {
     for (const int dimension : {2, 3}) {
       const Model m = read_deck_text(rocks(dimension, twelve));
       REQUIRE(m.bodies.size() == 13);
@@ -52,20 +58,27 @@ TEST_SUITE("deck") {
           }
         CHECK(inside > 4);
       }
-      const auto width = [&](std::size_t k) { return m.bodies[k].shape->box().hi.x() - m.bodies[k].shape->box().lo.x(); };
+      const auto width = [&](std::size_t k) {
+        return m.bodies[k].shape->box().hi.x() - m.bodies[k].shape->box().lo.x();
+      };
       CHECK(width(1) > 1.5 * width(12));  // the largest come first
       // The resolved deck holds them one by one, and means the same.
       const std::string resolved = resolved_yaml(m);
       CHECK(resolved.find("copies") == std::string::npos);
       CHECK(resolved_yaml(read_deck_text(resolved)) == resolved);
       CHECK(deck_hash(m) == deck_hash(read_deck_text(rocks(dimension, twelve))));
-      CHECK(deck_hash(m) != deck_hash(read_deck_text(rocks(dimension, twelve), {"bodies.stone.copies.seed=4"})));
-      CHECK(read_deck_text(rocks(dimension, twelve), {"bodies.stone.copies.count=3"}).bodies.size() == 4);
+      CHECK(deck_hash(m) !=
+            deck_hash(read_deck_text(rocks(dimension, twelve), {"bodies.stone.copies.seed=4"})));
+      CHECK(
+          read_deck_text(rocks(dimension, twelve), {"bodies.stone.copies.count=3"}).bodies.size() ==
+          4);
     }
   }
 
   TEST_CASE("copies that do not fit, and other mistakes, are told with their place") {
-    const auto says = [](const std::string& copies, const std::string& what, const std::string& shape = "{type: sphere, center: [0, 0, 0], radius: r}") {
+    const auto says = [](const std::string& copies, const std::string& what,
+                         const std::string& shape =
+                             "{type: sphere, center: [0, 0, 0], radius: r}") {
       CAPTURE(copies);
       const auto found = findings(rocks(2, copies, shape));
       REQUIRE(found.size() == 1);
@@ -73,17 +86,24 @@ TEST_SUITE("deck") {
       CHECK(found[0].place.line >= 10);
       return found[0];
     };
-    const Diagnostic full = says("{count: 500, region: {type: box, min: [-1, 0, 0], max: [1, 0, 2]}}", "of 500 copies fit into the region");
+    const Diagnostic full =
+        says("{count: 500, region: {type: box, min: [-1, 0, 0], max: [1, 0, 2]}}",
+             "of 500 copies fit into the region");
     CHECK(full.place.line == 11);
     CHECK(full.place.column == 5);
     says("{count: 2, region: {type: half_space, point: [0, 0, 1]}}", "unbounded");
-    says("{count: 2, region: {type: box, min: [-1, 0, 0], max: [1, 0, 2]}, sizes: [2, 1]}", "larger than the largest");
+    says("{count: 2, region: {type: box, min: [-1, 0, 0], max: [1, 0, 2]}, sizes: [2, 1]}",
+         "larger than the largest");
     says("{count: 0, region: {type: box, min: [-1, 0, 0], max: [1, 0, 2]}}", "0");
-    const auto misspelt = findings("dimension: 2\nresolution: 0.1\nend_time: 1\nmaterials: [{name: w, type: water, sound_speed: 10}]\n"
-                                   "bodies: [{name: b, material: w, shape: {type: sphere, center: [0, 0, 0], radius: 1}, copys: {}}]\n");
+    const auto misspelt = findings(
+        "dimension: 2\nresolution: 0.1\nend_time: 1\nmaterials: [{name: w, type: water, "
+        "sound_speed: 10}]\n"
+        "bodies: [{name: b, material: w, shape: {type: sphere, center: [0, 0, 0], radius: 1}, "
+        "copys: {}}]\n");
     REQUIRE(misspelt.size() == 1);
     CHECK(misspelt[0].help == "did you mean 'copies'?");
     says("{cuont: 2, region: {type: box, min: [-1, 0, 0], max: [1, 0, 2]}}", "cuont");
-    says("{count: 2, region: {type: box, min: [-1, 0, 0], max: [1, 0, 2]}}", "radios", "{type: sphere, center: [0, 0, 0], radios: r}");
+    says("{count: 2, region: {type: box, min: [-1, 0, 0], max: [1, 0, 2]}}", "radios",
+         "{type: sphere, center: [0, 0, 0], radios: r}");
   }
 }

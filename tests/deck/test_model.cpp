@@ -120,9 +120,8 @@ TEST_SUITE("deck") {
       CAPTURE(change.second);
       CHECK(deck_hash(read_deck_text(with(change.first, change.second))) == hash);
     }
-    for (const auto& change :
-         {std::pair{"0.01 m", "0.02 m"}, std::pair{"limiter: 3", "limiter: 4"},
-          std::pair{"1 g/cm3", "1.1 g/cm3"}, std::pair{"0.1*z", "0.2*z"}}) {
+    for (const auto& change : {std::pair{"0.01 m", "0.02 m"}, std::pair{"limiter: 3", "limiter: 4"},
+                               std::pair{"1 g/cm3", "1.1 g/cm3"}, std::pair{"0.1*z", "0.2*z"}}) {
       CAPTURE(change.second);
       CHECK(deck_hash(read_deck_text(with(change.first, change.second))) != hash);
     }

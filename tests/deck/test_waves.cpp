@@ -19,7 +19,9 @@ TEST_SUITE("deck") {
       }
   }
 
-  TEST_CASE("the stroke: H / kd in shallow water (Galvin), H / 2 in deep water, Dean and Dalrymple's formula between") {
+  TEST_CASE(
+      "the stroke: H / kd in shallow water (Galvin), H / 2 in deep water, Dean and Dalrymple's "
+      "formula between") {
     Waves w;
     w.height = 0.1;
     w.period = 30;
@@ -44,7 +46,9 @@ TEST_SUITE("deck") {
     CHECK(w.displacement(10.75).x() == doctest::Approx(-0.5 * w.stroke()));
   }
 
-  TEST_CASE("second order: grows with the square of the height, adds nothing in deep water, sharpens the push of long waves") {
+  TEST_CASE(
+      "second order: grows with the square of the height, adds nothing in deep water, sharpens the "
+      "push of long waves") {
     Waves w;
     w.height = 0.32;
     w.period = 2;
@@ -52,19 +56,24 @@ TEST_SUITE("deck") {
     CHECK(w.second_amplitude() == 0);
     const Vec3 first = w.displacement(12.1);
     w.order = 2;
-    CHECK((w.displacement(12.1) - first).x() == doctest::Approx(w.second_amplitude() * std::sin(4 * std::numbers::pi * 0.05)));
+    CHECK((w.displacement(12.1) - first).x() ==
+          doctest::Approx(w.second_amplitude() * std::sin(4 * std::numbers::pi * 0.05)));
     const double high = w.second_amplitude();
     CHECK(high > 0);
     w.height = 0.16;
     CHECK(w.second_amplitude() == doctest::Approx(high / 4));
-    // Long waves: the piston follows the water, dX/dt = c eta / (d + eta) (Goring). Of its second harmonic H^2 / d (3 / (32 (kd)^3)
-    // belongs to Stokes' second crest; the rest is of the order of 1 / kd.
+    // Long waves: the piston follows the water, dX/dt = c eta / (d + eta) (Goring). Of its second
+    // harmonic H^2 / d (3 / (32 (kd)^3) belongs to Stokes' second crest; the rest is of the order
+    // of 1 / kd.
     w.period = 60;
     const double kd = w.wave_number() * w.depth;
-    CHECK(w.second_amplitude() == doctest::Approx(3 * w.height * w.height / (32 * w.depth * kd * kd * kd)).epsilon(2 * kd * kd));
+    CHECK(w.second_amplitude() ==
+          doctest::Approx(3 * w.height * w.height / (32 * w.depth * kd * kd * kd))
+              .epsilon(2 * kd * kd));
     // Deep water: what is left of it is -1/32 H^2 / d.
     w.period = 0.4;
-    CHECK(w.second_amplitude() == doctest::Approx(-w.height * w.height / (32 * w.depth)).epsilon(1e-3));
+    CHECK(w.second_amplitude() ==
+          doctest::Approx(-w.height * w.height / (32 * w.depth)).epsilon(1e-3));
   }
 
   TEST_CASE("what stays near the piston holds what it displaces beyond what runs away") {
@@ -72,15 +81,19 @@ TEST_SUITE("deck") {
     w.height = 0.05;
     w.period = 1.4;
     w.depth = 0.4;
-    // Its volume is that displaced, d per metre of stroke, less what the progressive wave carries past the piston.
+    // Its volume is that displaced, d per metre of stroke, less what the progressive wave carries
+    // past the piston.
     double volume = 0;
     const double step = 1e-4;
     for (int k = 0; k < 40000; ++k) volume += step * w.evanescent((k + 0.5) * step);
-    CHECK(volume == doctest::Approx(w.depth - w.height / (w.stroke() * w.wave_number())).epsilon(1e-3));
+    CHECK(volume ==
+          doctest::Approx(w.depth - w.height / (w.stroke() * w.wave_number())).epsilon(1e-3));
     CHECK(w.evanescent(3) == doctest::Approx(0).epsilon(1e-6));
   }
 
-  TEST_CASE("far from the piston a low wave is what was asked for; one of second order has a higher crest") {
+  TEST_CASE(
+      "far from the piston a low wave is what was asked for; one of second order has a higher "
+      "crest") {
     Waves w;
     w.height = 0.05;
     w.period = 1.4;

@@ -156,7 +156,9 @@ TEST_SUITE("deck") {
 
   TEST_CASE("other encodings than UTF-8 are named") {
     CHECK(finding("a: 1\nb: 'gr\xF6\xDF'\n") == "E002@2:7");
-    CHECK(finding(std::string("\xFF\xFE" "a\0:\0", 6)) == "E002@1:1");
+    CHECK(finding(std::string("\xFF\xFE"
+                              "a\0:\0",
+                              6)) == "E002@1:1");
     CHECK(finding(std::string("\xFE\xFF\0a\0:", 6)) == "E002@1:1");
     CHECK(finding("a: 'gr\xC3\xB6\xC3\x9F'\n") == "findings: 0");
   }

@@ -23,7 +23,8 @@ materials: [{{name: water, type: water, sound_speed: 20}}]
 bodies:
   - {{name: block, material: water, shape: {{type: box, min: [0, 0, 0], max: [{}, {}, {}]}}}}
 numerics: {{{}}}
-)", dimension, size, size, size, numerics);
+)",
+                     dimension, size, size, size, numerics);
 }
 
 // Spread (standard deviation) of the number density over particles `margin` away from the surface.
@@ -33,7 +34,8 @@ double spread(Rig<Dim>& rig, double size, double margin) {
   const Kernel<Dim> kernel(rig.water().smoothing_length());
   double sum = 0, squares = 0, n = 0;
   for (Index i = 0; i < x.size(); ++i) {
-    if (test::depth_in_box<Dim>(x[i], Vec<Dim>::Zero(), Vec<Dim>::Constant(size)) < margin) continue;
+    if (test::depth_in_box<Dim>(x[i], Vec<Dim>::Zero(), Vec<Dim>::Constant(size)) < margin)
+      continue;
     double number = 0;
     for (Index j = 0; j < x.size(); ++j)
       number += kernel.w((x[i] - x[j]).squaredNorm()) * std::pow(0.1, Dim);
@@ -81,8 +83,9 @@ TEST_SUITE("effects") {
   }
 
   TEST_CASE("water that touches a wall has no surface there") {
-    Rig<2> rig(block(2, 2.0, "transport_velocity: false") +
-               "boundaries:\n  - {name: tank, type: tank, min: [0, 0, 0], max: [2, 1, 3], open: [top]}\n");
+    Rig<2> rig(
+        block(2, 2.0, "transport_velocity: false") +
+        "boundaries:\n  - {name: tank, type: tank, min: [0, 0, 0], max: [2, 1, 3], open: [top]}\n");
     rig.plan_it();
     const auto& x = rig.water().vector(fields::position);
     Index flagged = 0;
@@ -149,7 +152,8 @@ TEST_SUITE("effects") {
       CHECK(rig.water().scalar(fields::density)[i] == doctest::Approx(1000).epsilon(1e-6));
     // A block squeezed by one per cent along x is denser by one per cent.
     Rig<2> squeezed(block(2, 2.0, "transport_velocity: false"));
-    for (Index i = 0; i < squeezed.water().size(); ++i) squeezed.water().vector(fields::position)[i].x() /= 1.01;
+    for (Index i = 0; i < squeezed.water().size(); ++i)
+      squeezed.water().vector(fields::position)[i].x() /= 1.01;
     squeezed.plan_it();
     const Index middle = test::particle_at<2>(squeezed.water(), {1.05 / 1.01, 1.05});
     REQUIRE(middle >= 0);

@@ -29,7 +29,8 @@ bodies:
     velocity: [2*z - x + 0.3, 0, -2*x + sin(9*z) - 0.2]
     pressure: 5e3*cos(3*x)
 numerics: {{pair_precision: {}}}
-)", precision);
+)",
+                     precision);
 }
 
 const char* const tank = R"(
@@ -41,12 +42,14 @@ materials: [{name: water, type: water, density: 1000, viscosity: 1e-3}]
 bodies:
   - name: pool
     material: water
-    shape: {type: difference, of: [{type: box, min: [0, 0, 0], max: [0.5, 0.1, 0.3]}, {type: box, min: [0.2, 0, 0], max: [0.3, 0.1, 0.1]}]}
+    shape: {type: difference, of: [{type: box, min: [0, 0, 0], max: [0.5, 0.1, 0.3]}, {type: box,
+        min: [0.2, 0, 0], max: [0.3, 0.1, 0.1]}]}
     level: 0.3
     pressure: hydrostatic
 boundaries:
   - {name: tank, type: tank, min: [0, 0, 0], max: [0.5, 0.1, 0.4], open: [top]}
-  - {name: sill, type: wall, shape: {type: box, min: [0.2, 0, 0], max: [0.3, 0.1, 0.1]}, slip: free_slip}
+  - {name: sill, type: wall, shape: {type: box, min: [0.2, 0, 0], max: [0.3, 0.1, 0.1]},
+      slip: free_slip}
 )";
 
 Vec<2> momentum(const ParticleSet<2>& water) {
@@ -120,13 +123,17 @@ TEST_SUITE("effects") {
     std::set<Id> left;
     for (Index i = 0; i < rig.water().size(); ++i) left.insert(rig.water().ids()[i]);
     CHECK(left == inside);
-    Rig<2> strict(free_body("single"), {"numerics.domain_max=[0.3, 0, 5]", "numerics.outside=stop"});
-    CHECK_THROWS_WITH_AS(strict.plan_it(), doctest::Contains("left the domain"), std::runtime_error);
+    Rig<2> strict(free_body("single"),
+                  {"numerics.domain_max=[0.3, 0, 5]", "numerics.outside=stop"});
+    CHECK_THROWS_WITH_AS(strict.plan_it(), doctest::Contains("left the domain"),
+                         std::runtime_error);
   }
 
   TEST_CASE("walls push the water as hard as the water pushes the walls") {
-    for (const auto& [precision, tolerance] : {std::pair{"double", 1e-12}, std::pair{"single", 1e-5}}) {
-      Rig<2> rig(tank, {std::string("numerics.pair_precision=") + precision, "bodies[0].velocity=[2, 0, -1]"});
+    for (const auto& [precision, tolerance] :
+         {std::pair{"double", 1e-12}, std::pair{"single", 1e-5}}) {
+      Rig<2> rig(tank, {std::string("numerics.pair_precision=") + precision,
+                        "bodies[0].velocity=[2, 0, -1]"});
       rig.plan_it(wall_force);
       rig.advance(3);
       const auto [on_water, on_walls] = action_and_reaction(rig);
@@ -144,32 +151,36 @@ TEST_SUITE("effects") {
     double low = 1e9, high = 0, sum = 0;
     long n = 0;
     rig.stepper->run(0.3, {[&] {
-      if (rig.world.clock.time < 0.1) return true;
-      const Vec<2> f = action_and_reaction(rig).second;
-      low = std::min(low, -f[1] / weight);
-      high = std::max(high, -f[1] / weight);
-      sum += -f[1] / weight;
-      ++n;
-      CHECK(std::abs(f[0]) < 0.05 * weight);
-      return true;
-    }});
-    INFO("force on the floor / weight: ", low, " to ", high, ", mean ", sum / static_cast<double>(n));
+                       if (rig.world.clock.time < 0.1) return true;
+                       const Vec<2> f = action_and_reaction(rig).second;
+                       low = std::min(low, -f[1] / weight);
+                       high = std::max(high, -f[1] / weight);
+                       sum += -f[1] / weight;
+                       ++n;
+                       CHECK(std::abs(f[0]) < 0.05 * weight);
+                       return true;
+                     }});
+    INFO("force on the floor / weight: ", low, " to ", high, ", mean ",
+         sum / static_cast<double>(n));
     CHECK(sum / static_cast<double>(n) == doctest::Approx(1).epsilon(0.01));
     CHECK(low > 0.97);
     CHECK(high < 1.03);
   }
 
   TEST_CASE("a block in uniform motion keeps its density and velocity") {
-    for (const auto& [precision, tolerance] : {std::pair{"double", 1e-12}, std::pair{"single", 1e-6}}) {
-      Rig<2> rig(free_body(precision), {"bodies[0].velocity=[1, 0, 0.5]", "bodies[0].pressure=zero",
-                                        "bodies[0].shape={type: box, min: [0, 0, 0], max: [0.5, 0, 0.5]}",
-                                        "numerics.transport_velocity=false"});
+    for (const auto& [precision, tolerance] :
+         {std::pair{"double", 1e-12}, std::pair{"single", 1e-6}}) {
+      Rig<2> rig(free_body(precision),
+                 {"bodies[0].velocity=[1, 0, 0.5]", "bodies[0].pressure=zero",
+                  "bodies[0].shape={type: box, min: [0, 0, 0], max: [0.5, 0, 0.5]}",
+                  "numerics.transport_velocity=false"});
       rig.plan_it();
       rig.advance_acoustic(200);
       double off = 0, off_density = 0;
       for (Index i = 0; i < rig.water().size(); ++i) {
         off = std::max(off, (rig.water().vector(fields::velocity)[i] - Vec<2>(1, 0.5)).norm());
-        off_density = std::max(off_density, std::abs(rig.water().scalar(fields::density)[i] / 1000 - 1));
+        off_density =
+            std::max(off_density, std::abs(rig.water().scalar(fields::density)[i] / 1000 - 1));
       }
       INFO(std::string(precision), ": velocity ", off, " m/s, density ", off_density);
       CHECK(off < tolerance * 30);  // in terms of the speed of sound

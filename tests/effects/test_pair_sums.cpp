@@ -30,14 +30,17 @@ bodies:
     velocity: [8*sin(9*z) + x, {}, 7*sin(11*x) - z]
     pressure: 2e4*sin(5*x)*cos(7*z) + 1e4
 numerics: {{pair_precision: {}, transport_velocity: false, density_reinitialization: none}}
-)", dimension, dimension == 2 ? 0.05 : 0.125, gravity, dimension == 2 ? "0" : "5*cos(8*x)", precision);
+)",
+                     dimension, dimension == 2 ? 0.05 : 0.125, gravity,
+                     dimension == 2 ? "0" : "5*cos(8*x)", precision);
 }
 
 // The Wendland kernel of Eq. 102, written down independently: dW/dr.
 double kernel_slope(int dim, double r, double h) {
   const double q = r / h;
   if (q >= 2) return 0;
-  const double c = dim == 2 ? 7 / (4 * std::numbers::pi * h * h) : 21 / (16 * std::numbers::pi * h * h * h);
+  const double c =
+      dim == 2 ? 7 / (4 * std::numbers::pi * h * h) : 21 / (16 * std::numbers::pi * h * h * h);
   return c / h * -5 * q * std::pow(1 - q / 2, 3);
 }
 
@@ -73,7 +76,8 @@ Expected<Dim> all_pairs(Rig<Dim>& rig) {
       const double beta = std::min(xi * std::max((rho0 + rho0) * (u_l - u_r) / (z + z), 0.0), 1.0);
       const double p_star = (z * p_j + z * p_i + beta * z * z * (u_l - u_r)) / (z + z);
       a -= 2 / rho[i] * p_star * volume * gradient;
-      a += eta * 2 * r.dot(gradient) / (length * length + 0.01 * h * h) * volume / rho[i] * (v[i] - v[j]);
+      a += eta * 2 * r.dot(gradient) / (length * length + 0.01 * h * h) * volume / rho[i] *
+           (v[i] - v[j]);
       divergence += (v[i] - v[j]).dot(gradient) * volume;
       const double jump = p_i - p_j - rho0 * g.dot(r);
       dissipation += 2 * jump / (z + z) * kernel_slope(Dim, length, h) * volume;

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/Geometry>
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include <cmath>
 
@@ -26,12 +26,15 @@ bodies:
     material: rubber
     shape: {{type: box, min: [0, 0, 0], max: [0.8, 0.6, 0.7]}}
     {}
-{})", dimension, body, more);
+{})",
+                     dimension, body, more);
 }
 
 template <int Dim>
 Eigen::Matrix<double, Dim, Dim> turn(double angle) {
-  const Mat3 r = Eigen::AngleAxisd(angle, Vec3(Dim == 3 ? 0.6 : 0, Dim == 3 ? 0.0 : 1, Dim == 3 ? 0.8 : 0)).toRotationMatrix();
+  const Mat3 r =
+      Eigen::AngleAxisd(angle, Vec3(Dim == 3 ? 0.6 : 0, Dim == 3 ? 0.0 : 1, Dim == 3 ? 0.8 : 0))
+          .toRotationMatrix();
   if constexpr (Dim == 3) {
     return r;
   } else {
@@ -47,7 +50,8 @@ void check_rotation(const std::string& numerics, double tolerance) {
   auto& set = rig.world.set("solids");
   const auto r = turn<Dim>(2.0);
   for (Index i = 0; i < set.size(); ++i)
-    set.vector(fields::position)[i] = r * set.vector(fields::reference_position)[i] + Vec<Dim>::Constant(0.3);
+    set.vector(fields::position)[i] =
+        r * set.vector(fields::reference_position)[i] + Vec<Dim>::Constant(0.3);
   rig.plan_it({{"solids", "von_mises", "test", false}});
   rig.plan->run(Stage::observe);
   rig.world.clock.dt_solid = 0;
@@ -73,12 +77,14 @@ void check_patch() {
   stretch(0, 0) = 1.1;
   stretch(Dim - 1, 0) = 0.05;
   f = f * stretch;
-  for (Index i = 0; i < set.size(); ++i) set.vector(fields::position)[i] = f * set.vector(fields::reference_position)[i];
+  for (Index i = 0; i < set.size(); ++i)
+    set.vector(fields::position)[i] = f * set.vector(fields::reference_position)[i];
   rig.plan_it({{"solids", "von_mises", "test", false}});
   rig.plan->run(Stage::observe);
   // Every particle has the same energy, also at faces and corners: B0 sees a linear field exactly.
   const auto& energy = set.scalar(fields::strain_energy);
-  for (Index i = 0; i < set.size(); ++i) CHECK(energy[i] == doctest::Approx(energy[0]).epsilon(1e-10));
+  for (Index i = 0; i < set.size(); ++i)
+    CHECK(energy[i] == doctest::Approx(energy[0]).epsilon(1e-10));
   CHECK(set.scalar(fields::volume)[0] == doctest::Approx(1.1 * std::pow(0.1, Dim)).epsilon(1e-10));
 }
 
@@ -118,7 +124,8 @@ void check_energy(const std::string& numerics, const std::string& body = "") {
   disturb(rig, 0.1);
   for (Index i = 0; i < rig.world.set("solids").size(); ++i)
     if (rig.world.set("solids").tag(fields::clamp)[i] >= 0)
-      rig.world.set("solids").vector(fields::position)[i] = rig.world.set("solids").vector(fields::reference_position)[i];
+      rig.world.set("solids").vector(fields::position)[i] =
+          rig.world.set("solids").vector(fields::reference_position)[i];
   rig.plan_it({{"solids", "strain_energy", "test", false}});
   auto& set = rig.world.set("solids");
   rig.world.clock.dt_solid = 0;
@@ -134,7 +141,9 @@ void check_energy(const std::string& numerics, const std::string& body = "") {
   std::vector<Vec<Dim>> step;
   for (Index i = 0; i < set.size(); ++i) {
     Vec<Dim> u;
-    for (int k = 0; k < Dim; ++k) u[k] = (set.tag(fields::clamp)[i] < 0 ? 1e-6 : 0) * (2 * random_uniform(9, static_cast<std::uint64_t>(Dim * i + k)) - 1);
+    for (int k = 0; k < Dim; ++k)
+      u[k] = (set.tag(fields::clamp)[i] < 0 ? 1e-6 : 0) *
+             (2 * random_uniform(9, static_cast<std::uint64_t>(Dim * i + k)) - 1);
     step.push_back(u);
     work += set.scalar(fields::mass)[i] * set.vector(fields::acceleration_sum)[i].dot(u);
   }
@@ -170,7 +179,8 @@ double bending_error(const std::string& gradient) {
     g(0, 2) = -bend * at[0];
     g(2, 0) = bend * at[0];
     g(2, 2) = 0.6 * bend * at[Dim - 1];
-    const double expected = std::pow(0.1, Dim) * strain_energy_density(g, {1e6 / 2.6, 1e6 * 0.3 / (1.3 * 0.4), true});
+    const double expected =
+        std::pow(0.1, Dim) * strain_energy_density(g, {1e6 / 2.6, 1e6 * 0.3 / (1.3 * 0.4), true});
     worst = std::max(worst, std::abs(energy[i] - expected));
     most = std::max(most, expected);
   }
@@ -180,7 +190,9 @@ double bending_error(const std::string& gradient) {
 }  // namespace
 
 TEST_SUITE("effects") {
-  TEST_CASE("the quadratic gradient sees bending as it is, also at faces and corners; the linear one does not") {
+  TEST_CASE(
+      "the quadratic gradient sees bending as it is, also at faces and corners; the linear one "
+      "does not") {
     CHECK(bending_error<2>("quadratic") < 1e-5);
     CHECK(bending_error<3>("quadratic") < 1e-5);
     CHECK(bending_error<2>("linear") > 0.05);
@@ -207,13 +219,16 @@ TEST_SUITE("effects") {
     for (const std::string gradient : {"linear", "quadratic"}) {
       check_energy<2>("numerics: {pair_precision: double, solid_gradient: " + gradient + "}");
       check_energy<3>("numerics: {pair_precision: double, solid_gradient: " + gradient + "}");
-      check_energy<2>("numerics: {pair_precision: double, solid_gradient: " + gradient + "}", "clamped: [{shape: {type: half_space, point: [0.2, 0, 0], normal: [1, 0, 0]}}]");
+      check_energy<2>(
+          "numerics: {pair_precision: double, solid_gradient: " + gradient + "}",
+          "clamped: [{shape: {type: half_space, point: [0.2, 0, 0], normal: [1, 0, 0]}}]");
     }
   }
   TEST_CASE("a clamped region rests or moves as prescribed") {
     Rig<2> rig(block(2, "", R"(clamped:
       - {shape: {type: half_space, point: [0.2, 0, 0], normal: [1, 0, 0]}}
-      - {shape: {type: half_space, point: [0.6, 0, 0], normal: [-1, 0, 0]}, motion: {displacement: [0.01*t, 0, 0]}})"));
+      - {shape: {type: half_space, point: [0.6, 0, 0], normal: [-1, 0, 0]},
+          motion: {displacement: [0.01*t, 0, 0]}})"));
     rig.plan_it();
     rig.stepper->run(0.05, {[] { return true; }});
     const auto& set = rig.world.set("solids");

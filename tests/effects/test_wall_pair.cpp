@@ -50,7 +50,8 @@ double slope(const V& r) { return Kernel<2>(h).dw_over_r(dot(r, r)); }
 }  // namespace
 
 TEST_SUITE("effects") {
-  TEST_CASE("under still water the floor's pressure exceeds the water's by rho g times their distance") {
+  TEST_CASE(
+      "under still water the floor's pressure exceeds the water's by rho g times their distance") {
     const V r = at(0, dp);
     CHECK(rho * WallPair<2>::rise(floor_particle(), r[1]) == doctest::Approx(rho * g * dp));
     CHECK(gradient == doctest::Approx(rho * g).epsilon(0.01));
@@ -65,7 +66,8 @@ TEST_SUITE("effects") {
     for (const double x : {-0.2, -0.05, 0.15}) {
       const V r = at(x, 0.5 * dp);
       const V f = pair.force(still_water(500), floor_particle(), r, dot(r, r));
-      CHECK(f[1] == doctest::Approx(-(2 * 500 + gradient * 0.5 * dp) * slope(r) * 0.5 * dp * volume));
+      CHECK(f[1] ==
+            doctest::Approx(-(2 * 500 + gradient * 0.5 * dp) * slope(r) * 0.5 * dp * volume));
     }
   }
 
@@ -83,7 +85,8 @@ TEST_SUITE("effects") {
     CHECK(fall[0] == doctest::Approx(-2 * 500 * slope(r) * dp * volume));
   }
 
-  TEST_CASE("water that runs into a wall is pushed back by the Riemann term, water that leaves is not") {
+  TEST_CASE(
+      "water that runs into a wall is pushed back by the Riemann term, water that leaves is not") {
     const V r = at(0, dp);
     const auto force_at = [&](double speed) {
       Water w = still_water(500);
@@ -108,7 +111,8 @@ TEST_SUITE("effects") {
     wall.slot[wall_slot::push] = 0;
     const V stuck = pair.force(w, wall, r, dot(r, r));
     // Eq. 74 with v_i - v_wall^d = 2 (v_i - v_wall).
-    CHECK(stuck[0] == doctest::Approx(2 * 2.0 * 2 * 3 * slope(r) * dp * dp / (dp * dp + 0.01 * h * h) * volume));
+    CHECK(stuck[0] == doctest::Approx(2 * 2.0 * 2 * 3 * slope(r) * dp * dp /
+                                      (dp * dp + 0.01 * h * h) * volume));
     CHECK(stuck[0] < 0);
     wall.slot[wall_slot::no_slip] = 0;
     CHECK(pair.force(w, wall, r, dot(r, r))[0] == 0.0);
@@ -118,14 +122,17 @@ TEST_SUITE("effects") {
     CHECK(pair.force(w, wall, r, dot(r, r))[0] == 0.0);
   }
 
-  TEST_CASE("a wall that moves into the water compresses it, one that leads gravity away does not dissipate") {
+  TEST_CASE(
+      "a wall that moves into the water compresses it, one that leads gravity away does not "
+      "dissipate") {
     Record<2, double> water{};
     const V r = at(0, dp);
     Wall wall = floor_particle();
     CHECK(pair.divergence(water, wall, r, dot(r, r)) == doctest::Approx(0));
     wall.slot[wall_slot::velocity + 1] = 1;
     // d rho/dt = rho * sum of 2 (v_i - v_wall) . grad W V, positive when they close.
-    CHECK(pair.divergence(water, wall, r, dot(r, r)) == doctest::Approx(-2 * slope(r) * dp * volume));
+    CHECK(pair.divergence(water, wall, r, dot(r, r)) ==
+          doctest::Approx(-2 * slope(r) * dp * volume));
     CHECK(pair.divergence(water, wall, r, dot(r, r)) > 0);
   }
 }

@@ -2,11 +2,10 @@
  *
  *   SPHGEO_FAULT_FOLDER   only calls on files below this folder count
  *   SPHGEO_FAULT_LOG      every such call is appended there as a line "kind path"
- *   SPHGEO_FAULT          "kind:n:error" - the n-th call of this kind (from 1) fails with this errno;
- *                         "kind:n+:error" - so do all later ones: a disk stays full
- *                         a failing write first takes half of its bytes, as a disk that fills up does
- *                         "short:1:0" - every write takes at most seven bytes, and all succeed
- * Kinds: open (for writing), write, sync, close, rename, unlink, mkdir, truncate.
+ *   SPHGEO_FAULT          "kind:n:error" - the n-th call of this kind (from 1) fails with this
+ * errno; "kind:n+:error" - so do all later ones: a disk stays full a failing write first takes half
+ * of its bytes, as a disk that fills up does "short:1:0" - every write takes at most seven bytes,
+ * and all succeed Kinds: open (for writing), write, sync, close, rename, unlink, mkdir, truncate.
  */
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -45,12 +44,14 @@ static int chosen(const char* kind, long* first, int* further, int* error) {
 /* Counts and logs a call; the error it has to fail with, or 0. */
 static int fault(const char* kind, const char* path) {
   static long counts[8];
-  static const char* const kinds[8] = {"open", "write", "sync", "close", "rename", "unlink", "mkdir", "truncate"};
+  static const char* const kinds[8] = {"open",   "write",  "sync",  "close",
+                                       "rename", "unlink", "mkdir", "truncate"};
   const char* log = getenv("SPHGEO_FAULT_LOG");
   if (log) {
     char line[4400];
     const int n = snprintf(line, sizeof line, "%s %s\n", kind, path);
-    const int file = ((open_call)real("open"))(log, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    const int file =
+        ((open_call)real("open"))(log, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (file >= 0) {
       if (((write_call)real("write"))(file, line, (size_t)n) < 0) abort();
       ((int (*)(int))real("close"))(file);
@@ -61,7 +62,8 @@ static int fault(const char* kind, const char* path) {
     const long now = ++counts[k];
     long first = 0;
     int further = 0, error = 0;
-    if (chosen(kind, &first, &further, &error) && (now == first || (further && now > first))) return error;
+    if (chosen(kind, &first, &further, &error) && (now == first || (further && now > first)))
+      return error;
   }
   return 0;
 }
@@ -113,10 +115,14 @@ ssize_t write(int descriptor, const void* data, size_t bytes) {
 }
 
 /* fdatasync leaves out times only, which no test looks at. */
-int fsync(int descriptor) { return fails_at("sync", descriptor) ? -1 : ((int (*)(int))real("fsync"))(descriptor); }
+int fsync(int descriptor) {
+  return fails_at("sync", descriptor) ? -1 : ((int (*)(int))real("fsync"))(descriptor);
+}
 
 int close(int descriptor) {
-  const int failed = (fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY && fails_at("close", descriptor), error = errno;
+  const int failed = (fcntl(descriptor, F_GETFL) & O_ACCMODE) != O_RDONLY &&
+                     fails_at("close", descriptor),
+            error = errno;
   const int result = ((int (*)(int))real("close"))(descriptor);
   if (!failed) return result;
   errno = error;
@@ -138,7 +144,9 @@ int mkdir(const char* path, mode_t mode) {
 }
 
 int ftruncate(int descriptor, off_t size) {
-  return fails_at("truncate", descriptor) ? -1 : ((int (*)(int, off_t))real("ftruncate"))(descriptor, size);
+  return fails_at("truncate", descriptor)
+             ? -1
+             : ((int (*)(int, off_t))real("ftruncate"))(descriptor, size);
 }
 
 /* Where a file size has 64 bits anyway, the names are two for one function. */

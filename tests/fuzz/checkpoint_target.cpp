@@ -29,9 +29,10 @@ std::string sound_checkpoint() {
 bool opens(const std::string& bytes) {
   try {
     const CheckpointReader reader(bytes, "checkpoint.h5");
-    require(reader.has("clock/time") && !reader.has("clock/none") && !reader.has("none/time"), "names are found");
-    require(reader.number("clock/time") == 0.5 && reader.count("clock/steps") == 12 && reader.text("version") == "0.1.0" &&
-                reader.size("sets/water/position") == 6,
+    require(reader.has("clock/time") && !reader.has("clock/none") && !reader.has("none/time"),
+            "names are found");
+    require(reader.number("clock/time") == 0.5 && reader.count("clock/steps") == 12 &&
+                reader.text("version") == "0.1.0" && reader.size("sets/water/position") == 6,
             "values are those that were put");
     for (const char* name : {"none", "sets/water/id"}) try {
         reader.number(name);
@@ -46,8 +47,8 @@ bool opens(const std::string& bytes) {
 
 }  // namespace
 
-/// The input is a file of its own, and a list of damages: three bytes each, two for the place and one
-/// for the bits to flip there; a last odd byte cuts the file.
+/// The input is a file of its own, and a list of damages: three bytes each, two for the place and
+/// one for the bits to flip there; a last odd byte cuts the file.
 void run_checkpoint(std::string_view input) {
   static const std::string sound = sound_checkpoint();
   require(!opens(std::string(input)) || input == sound, "a foreign file is no checkpoint");
@@ -59,7 +60,8 @@ void run_checkpoint(std::string_view input) {
     damaged[at] = static_cast<char>(damaged[at] ^ byte(k + 2));
   }
   if (k < input.size()) damaged.resize(damaged.size() * byte(k) / 256);
-  require(opens(damaged) == (damaged == sound), "a damaged checkpoint is refused, a sound one is not");
+  require(opens(damaged) == (damaged == sound),
+          "a damaged checkpoint is refused, a sound one is not");
 }
 
 }  // namespace sphgeo::fuzz

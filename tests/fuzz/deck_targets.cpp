@@ -22,14 +22,18 @@ end_time: 1 s
 variables: {L: 1.5, depth: 0.5*L, n: 4}
 materials: [{name: water, type: water, density: 1000}]
 bodies:
-  - {name: column, material: water, shape: {type: box, min: [0, 0, 0], max: [L, depth, 1]}, pressure: hydrostatic}
+  - {name: column, material: water, shape: {type: box, min: [0, 0, 0], max: [L, depth, 1]},
+      pressure: hydrostatic}
   - name: drop
     material: water
     velocity: [0, 0, -2*z]
-    shape: {type: union, of: [{type: sphere, center: [0, 0, 3], radius: 0.3}, {type: stl, file: ball.stl, translate: [0, 0, 4]}]}
+    shape: {type: union, of: [{type: sphere, center: [0, 0, 3], radius: 0.3}, {type: stl,
+        file: ball.stl, translate: [0, 0, 4]}]}
 boundaries:
-  - {name: tank, type: tank, min: [-1, -1, 0], max: [3, 2, 6], open: [top], motion: {displacement: [0.01*sin(t), 0, 0]}}
-  - {name: bed, type: wall, shape: {type: height_field, file: heights.csv, spacing: 0.5, bottom: -1}}
+  - {name: tank, type: tank, min: [-1, -1, 0], max: [3, 2, 6], open: [top],
+      motion: {displacement: [0.01*sin(t), 0, 0]}}
+  - {name: bed, type: wall, shape: {type: height_field, file: heights.csv, spacing: 0.5,
+      bottom: -1}}
 probes:
   - {name: p1, type: pressure, at: [0, 0, 0.1], every: 1 ms}
   - {name: energy, type: energy}
@@ -41,7 +45,8 @@ expect:
 
 void use_shape(const Shape& shape) {
   const Aabb box = shape.box();
-  for (const Vec3& at : {Vec3(0, 0, 0), Vec3(0.3, 0, -0.7), Vec3(box.lo), Vec3(0.5 * (box.lo + box.hi))})
+  for (const Vec3& at :
+       {Vec3(0, 0, 0), Vec3(0.3, 0, -0.7), Vec3(box.lo), Vec3(0.5 * (box.lo + box.hi))})
     if (at.allFinite()) shape.signed_distance(at);
 }
 
@@ -53,7 +58,8 @@ void use(const Model& model) {
             "every body of a sound deck has a shape and a material");
     use_shape(*body.shape);
     Diagnostics found;
-    CheckContext context(found, model.places, fmt::format("bodies[{}].shape", b), model.dimension, model.resolution);
+    CheckContext context(found, model.places, fmt::format("bodies[{}].shape", b), model.dimension,
+                         model.resolution);
     body.shape->inspect(context);
     for (const Expression& v : body.velocity) v(Vec3(0.1, 0.2, 0.3), 0.0);
   }
@@ -61,7 +67,8 @@ void use(const Model& model) {
     const auto* wall = dynamic_cast<const WallBoundary*>(spec.get());
     if (wall == nullptr) continue;
     if (wall->motion) wall->motion->velocity(Vec3(0.1, 0.2, 0.3), 0.5);
-    if (const auto solid = wall->solid({model.resolution, 4 * model.resolution, model.dimension})) use_shape(*solid);
+    if (const auto solid = wall->solid({model.resolution, 4 * model.resolution, model.dimension}))
+      use_shape(*solid);
   }
 }
 
@@ -69,9 +76,11 @@ void check_findings(const DeckError& e) {
   require(e.diagnostics.has_errors(), "a refused deck has an error");
   for (const Diagnostic& d : e.diagnostics.items()) {
     require(!d.place.file.empty(), "every finding names its file: " + d.message);
-    require(!d.message.empty() && d.message.size() < 20000, "a finding is a sentence: " + d.message);
+    require(!d.message.empty() && d.message.size() < 20000,
+            "a finding is a sentence: " + d.message);
   }
-  require(e.diagnostics.render(true).size() < (std::size_t{1} << 20), "a report has a bounded length");
+  require(e.diagnostics.render(true).size() < (std::size_t{1} << 20),
+          "a report has a bounded length");
 }
 
 void read(const std::string& text, const std::vector<std::string>& overrides) {
@@ -86,7 +95,8 @@ void read(const std::string& text, const std::vector<std::string>& overrides) {
   const std::string resolved = resolved_yaml(model);
   try {
     const Model again = read_deck_text(resolved, {}, "resolved.yaml", SPHGEO_FUZZ_FILES);
-    require(resolved_yaml(again) == resolved, "a resolved deck resolves to itself:\n" + resolved + "\nnot\n" + resolved_yaml(again));
+    require(resolved_yaml(again) == resolved,
+            "a resolved deck resolves to itself:\n" + resolved + "\nnot\n" + resolved_yaml(again));
     require(deck_hash(again) == deck_hash(model), "a resolved deck has the hash of its deck");
   } catch (const DeckError& e) {
     require(false, "a resolved deck can be read:\n" + resolved + e.diagnostics.render());
@@ -102,7 +112,8 @@ void run_set(std::string_view input) {
   constexpr std::size_t most = 16;
   std::vector<std::string> overrides;
   std::istringstream lines{std::string(input)};
-  for (std::string line; overrides.size() < most && std::getline(lines, line);) overrides.push_back(line);
+  for (std::string line; overrides.size() < most && std::getline(lines, line);)
+    overrides.push_back(line);
   read(base_deck, overrides);
 }
 

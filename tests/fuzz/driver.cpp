@@ -3,9 +3,9 @@
 //   sphgeo_fuzz TARGET [--seconds S] [--runs N] [--seed K] [--corpus DIR] [--keep DIR]
 //   sphgeo_fuzz TARGET FILE...          these inputs only
 //
-// Ends after N mutations or S seconds, whichever comes first; SPHGEO_FUZZ_SECONDS sets S and lifts N. A crash, an input that takes longer than
-// 10 s, more than 3 GiB of memory, or an exception that escapes is a finding: its input goes to a file
-// in DIR (default: here) and the exit code is 1.
+// Ends after N mutations or S seconds, whichever comes first; SPHGEO_FUZZ_SECONDS sets S and lifts
+// N. A crash, an input that takes longer than 10 s, more than 3 GiB of memory, or an exception that
+// escapes is a finding: its input goes to a file in DIR (default: here) and the exit code is 1.
 
 #include <fcntl.h>
 #include <signal.h>
@@ -65,7 +65,8 @@ void watch() {
   struct sigaction action {};
   action.sa_handler = on_signal;
   action.sa_flags = SA_ONSTACK;
-  for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM}) ::sigaction(number, &action, nullptr);
+  for (const int number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGALRM})
+    ::sigaction(number, &action, nullptr);
 #if !defined(__SANITIZE_ADDRESS__)  // its shadow memory is larger than any limit
   const rlimit limit{most_memory, most_memory};
   ::setrlimit(RLIMIT_AS, &limit);
@@ -125,7 +126,9 @@ Options parse(int argc, char** argv) {
 int main(int argc, char** argv) {
   const Target* target = argc > 1 ? find_target(argv[1]) : nullptr;
   if (target == nullptr) {
-    std::fprintf(stderr, "usage: sphgeo_fuzz TARGET [--seconds S] [--runs N] [--seed K] [--keep DIR] [FILE...]\n");
+    std::fprintf(
+        stderr,
+        "usage: sphgeo_fuzz TARGET [--seconds S] [--runs N] [--seed K] [--keep DIR] [FILE...]\n");
     return 2;
   }
   const Options options = parse(argc, argv);
@@ -138,7 +141,8 @@ int main(int argc, char** argv) {
   if (!options.files.empty()) return 0;
 
   std::vector<std::filesystem::path> paths;
-  for (const auto& entry : std::filesystem::directory_iterator(options.corpus + "/" + target->name)) paths.push_back(entry.path());
+  for (const auto& entry : std::filesystem::directory_iterator(options.corpus + "/" + target->name))
+    paths.push_back(entry.path());
   std::sort(paths.begin(), paths.end());
   std::vector<std::string> corpus;
   for (const auto& path : paths) {
@@ -151,12 +155,18 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "no stored inputs for '%s'\n", target->name);
     return 1;
   }
-  Mutator mutator(options.seed, read_words(options.corpus + "/" + target->name + ".dict"), target->longest);
+  Mutator mutator(options.seed, read_words(options.corpus + "/" + target->name + ".dict"),
+                  target->longest);
   const auto start = std::chrono::steady_clock::now();
-  const auto seconds = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
   std::size_t runs = 0;
   for (; runs < options.runs && seconds() < options.seconds; ++runs)
-    if (!run(*target, mutator.next(corpus[mutator.below(corpus.size())], corpus[mutator.below(corpus.size())]))) return 1;
-  std::printf("%s: %zu stored inputs, %zu mutations in %.1f s, no finding\n", target->name, corpus.size(), runs, seconds());
+    if (!run(*target, mutator.next(corpus[mutator.below(corpus.size())],
+                                   corpus[mutator.below(corpus.size())])))
+      return 1;
+  std::printf("%s: %zu stored inputs, %zu mutations in %.1f s, no finding\n", target->name,
+              corpus.size(), runs, seconds());
   return 0;
 }

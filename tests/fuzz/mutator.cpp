@@ -11,10 +11,26 @@ namespace sphgeo::fuzz {
 namespace {
 
 /// Numbers at which readers break.
-constexpr const char* numbers[] = {"0",     "-1",      "1e308",  "1e-320", "1e400", "nan",   "-inf",
-                                   "2",     "3",       "0x1F",   "010",    "1_000", "0.5",   "1e15",
-                                   "-1e300", "2147483648", "-9223372036854775809", "18446744073709551616"};
-constexpr unsigned char bytes[] = {0x00, 0x01, 0x09, 0x0a, 0x0d, 0x20, 0x7f, 0x80, 0xff, 0xfe, 0xef, 0xc3, '"', '[', '{', ':'};
+constexpr const char* numbers[] = {"0",
+                                   "-1",
+                                   "1e308",
+                                   "1e-320",
+                                   "1e400",
+                                   "nan",
+                                   "-inf",
+                                   "2",
+                                   "3",
+                                   "0x1F",
+                                   "010",
+                                   "1_000",
+                                   "0.5",
+                                   "1e15",
+                                   "-1e300",
+                                   "2147483648",
+                                   "-9223372036854775809",
+                                   "18446744073709551616"};
+constexpr unsigned char bytes[] = {0x00, 0x01, 0x09, 0x0a, 0x0d, 0x20, 0x7f, 0x80,
+                                   0xff, 0xfe, 0xef, 0xc3, '"',  '[',  '{',  ':'};
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
@@ -58,8 +74,10 @@ void Mutator::change(std::string& in, const std::string& other) {
       in.insert(at, other.substr(below(other.size() + 1), 4 * length));
       break;
     case 7: {  // another number where one stands
-      const auto first = std::find_if(in.begin() + static_cast<std::ptrdiff_t>(at), in.end(), is_digit);
-      const auto last = std::find_if_not(first, in.end(), [](char c) { return is_digit(c) || c == '.'; });
+      const auto first =
+          std::find_if(in.begin() + static_cast<std::ptrdiff_t>(at), in.end(), is_digit);
+      const auto last =
+          std::find_if_not(first, in.end(), [](char c) { return is_digit(c) || c == '.'; });
       in.replace(first, last, numbers[below(std::size(numbers))]);
       break;
     }

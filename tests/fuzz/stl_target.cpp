@@ -12,7 +12,8 @@ namespace sphgeo::fuzz {
 void run_stl(std::string_view input) {
   const MemoryFile file(input);
   for (const bool flat : {false, true})
-    for (const std::optional<double> tolerance : {std::optional<double>(), std::optional(1e-30), std::optional(0.1)}) {
+    for (const std::optional<double> tolerance :
+         {std::optional<double>(), std::optional(1e-30), std::optional(0.1)}) {
       Stl stl;
       stl.file.path = file.path();
       stl.flat = flat;
@@ -23,7 +24,8 @@ void run_stl(std::string_view input) {
         continue;
       }
       const Aabb box = stl.box();
-      require(!box.empty() && box.lo.allFinite() && box.hi.allFinite(), "a surface has a finite box");
+      require(!box.empty() && box.lo.allFinite() && box.hi.allFinite(),
+              "a surface has a finite box");
       Diagnostics found;
       const Places nowhere;
       CheckContext context(found, nowhere, "shape", flat ? 2 : 3);

@@ -31,12 +31,14 @@ void use_heights(std::string_view text) {
   }
   const Aabb box = field.box();
   for (const Vec3& at : {Vec3(0, 0, 0), Vec3(0.7, 0.2, box.hi.z() - 0.1), Vec3(-1, 9, 0)})
-    require(std::abs(box.hi.z()) > 1e100 || std::abs(field.height(0, 0)) > 1e100 || !std::isnan(field.signed_distance(at)),
+    require(std::abs(box.hi.z()) > 1e100 || std::abs(field.height(0, 0)) > 1e100 ||
+                !std::isnan(field.signed_distance(at)),
             "the distance to a terrain is a number");
 }
 
 void write(const std::string& path, std::string_view text) {
-  std::ofstream(path, std::ios::binary | std::ios::trunc).write(text.data(), static_cast<std::streamsize>(text.size()));
+  std::ofstream(path, std::ios::binary | std::ios::trunc)
+      .write(text.data(), static_cast<std::streamsize>(text.size()));
 }
 
 void resume_pvd(std::string_view text) {
@@ -79,14 +81,19 @@ void run_csv(std::string_view input) {
   try {
     const CsvTable table = parse_csv_table(input, "t.csv");
     require(!table.names().empty(), "a table has columns");
-    // Each look at a column costs as much as there are columns: a line of commas would take seconds.
-    for (const std::string& name : std::span(table.names()).first(std::min<std::size_t>(table.names().size(), 50))) {
-      require(table.has(name) && table.text(name).size() == table.rows(), "columns are equally long");
+    // Each look at a column costs as much as there are columns: a line of commas would take
+    // seconds.
+    for (const std::string& name :
+         std::span(table.names()).first(std::min<std::size_t>(table.names().size(), 50))) {
+      require(table.has(name) && table.text(name).size() == table.rows(),
+              "columns are equally long");
       try {
         for (const double v : table.numbers(name)) require(!std::isinf(v), "no cell is infinite");
       } catch (const TableError&) {
       }
-      if (table.rows() > 0) require(table.where(name, table.text(name).front()).rows() > 0, "a row is found by its cell");
+      if (table.rows() > 0)
+        require(table.where(name, table.text(name).front()).rows() > 0,
+                "a row is found by its cell");
     }
   } catch (const TableError&) {
   }
@@ -95,10 +102,8 @@ void run_csv(std::string_view input) {
 /// The first byte chooses the reader, the rest is the file.
 void run_resume(std::string_view input) {
   if (input.empty()) return;
-  if (input.front() == 'c')
-    resume_csv(input.substr(1));
-  else
-    resume_pvd(input.substr(1));
+  if (input.front() == 'c') resume_csv(input.substr(1));
+  else resume_pvd(input.substr(1));
 }
 
 }  // namespace sphgeo::fuzz

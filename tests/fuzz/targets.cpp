@@ -14,17 +14,19 @@ namespace sphgeo::fuzz {
 namespace {
 
 // The readers' own limits for sizes are tested by hand; short inputs find more here.
-constexpr std::array all{Target{"deck", run_deck, 1 << 14}, Target{"set", run_set, 1 << 12},
-                         Target{"stl", run_stl, 1 << 14}, Target{"csv", run_csv, 1 << 14},
-                         Target{"resume", run_resume, 1 << 14}, Target{"checkpoint", run_checkpoint, 1 << 12}};
+constexpr std::array all{
+    Target{"deck", run_deck, 1 << 14},     Target{"set", run_set, 1 << 12},
+    Target{"stl", run_stl, 1 << 14},       Target{"csv", run_csv, 1 << 14},
+    Target{"resume", run_resume, 1 << 14}, Target{"checkpoint", run_checkpoint, 1 << 12}};
 
 /// Owns the scratch folder until the process ends.
 struct Scratch {
   std::string path;
   Scratch() {
     // In memory when there is such a place: the readers flush their files to the disk.
-    const std::string parent =
-        std::filesystem::is_directory("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path().string();
+    const std::string parent = std::filesystem::is_directory("/dev/shm")
+                                   ? "/dev/shm"
+                                   : std::filesystem::temp_directory_path().string();
     path = parent + "/sphgeo-fuzz-XXXXXX";
     if (::mkdtemp(path.data()) == nullptr) {
       std::perror(path.c_str());

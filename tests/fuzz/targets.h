@@ -1,6 +1,6 @@
 #pragma once
-// What is fuzzed: one function for each reader of foreign bytes. libFuzzer and our own driver call the
-// same functions.
+// What is fuzzed: one function for each reader of foreign bytes. libFuzzer and our own driver call
+// the same functions.
 
 #include <span>
 #include <string>

@@ -13,10 +13,12 @@ using geometry_test::Hash;
 using geometry_test::shape_of;
 
 TEST_SUITE("geometry") {
-  TEST_CASE("boulder: near its surface the distance is that to the nearest of many surface points") {
+  TEST_CASE(
+      "boulder: near its surface the distance is that to the nearest of many surface points") {
     for (const int dim : {2, 3}) {
       CAPTURE(dim);
-      const ShapePtr s = shape_of("{type: boulder, center: [0.1, 0, 0.2], radius: 1, roughness: 0.2, seed: 4}", dim);
+      const ShapePtr s = shape_of(
+          "{type: boulder, center: [0.1, 0, 0.2], radius: 1, roughness: 0.2, seed: 4}", dim);
       const SurfaceMesh mesh = surface_mesh(*s, dim == 2 ? 0.005 : 0.04, dim);
       REQUIRE(mesh.points.size() > 100);
       double least = 9, most = 0;
@@ -47,11 +49,14 @@ TEST_SUITE("geometry") {
 
   TEST_CASE("boulder: the seed decides, and without roughness it is a ball") {
     const auto at = [](const char* more) {
-      return shape_of(std::string("{type: boulder, center: [0, 0, 0], radius: 1, ") + more + "}", 3)->signed_distance({0.7, 0.2, 0.6});
+      return shape_of(std::string("{type: boulder, center: [0, 0, 0], radius: 1, ") + more + "}", 3)
+          ->signed_distance({0.7, 0.2, 0.6});
     };
     CHECK(at("seed: 1") == at("seed: 1"));
     CHECK(at("seed: 1") != at("seed: 2"));
     CHECK(at("roughness: 0") == doctest::Approx(std::sqrt(0.49 + 0.04 + 0.36) - 1).epsilon(1e-6));
-    CHECK(geometry_test::read_shape("{type: boulder, center: [0, 0, 0], radius: 1, roughness: 0.6}", 3).found.has_errors());
+    CHECK(geometry_test::read_shape("{type: boulder, center: [0, 0, 0], radius: 1, roughness: 0.6}",
+                                    3)
+              .found.has_errors());
   }
 }

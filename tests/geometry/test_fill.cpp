@@ -59,8 +59,7 @@ TEST_SUITE("geometry") {
     std::size_t count = 0;
     for (int x = 0; x < 25; ++x)
       for (int y = 0; y < 25; ++y)
-        for (int z = 0; z < 25; ++z)
-          count += s->bound(Vec3(x + 0.5, y + 0.5, z + 0.5) * dp) < 0.0;
+        for (int z = 0; z < 25; ++z) count += s->bound(Vec3(x + 0.5, y + 0.5, z + 0.5) * dp) < 0.0;
     CHECK(count > 100);
     CHECK(fill_lattice(*s, dp, 3).size() == count);
   }

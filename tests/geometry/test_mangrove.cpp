@@ -1,4 +1,5 @@
-// The mangrove: roots that leave the trunk and reach the ground, within its bounds, another for another seed.
+// The mangrove: roots that leave the trunk and reach the ground, within its bounds, another for
+// another seed.
 
 #include <doctest/doctest.h>
 
@@ -17,13 +18,16 @@ using geometry_test::shape_of;
 namespace {
 
 std::string tree(const std::string& more) {
-  return "{type: mangrove, foot: [1, 2, 0.5], height: 1.2, trunk_radius: 0.06, root_radius: 0.03, root_height: 0.6, spread: 0.5" + more + "}";
+  return "{type: mangrove, foot: [1, 2, 0.5], height: 1.2, trunk_radius: 0.06, root_radius: 0.03, "
+         "root_height: 0.6, spread: 0.5" +
+         more + "}";
 }
 
 }  // namespace
 
 TEST_SUITE("geometry") {
-  TEST_CASE("mangrove: it stands on roots between half of the spread and all of it, and fits its box") {
+  TEST_CASE(
+      "mangrove: it stands on roots between half of the spread and all of it, and fits its box") {
     const ShapePtr s = shape_of(tree(", roots: 14, branching: 0.7"), 3);
     const Aabb box = s->box();
     double farthest = 0;
@@ -56,8 +60,14 @@ TEST_SUITE("geometry") {
   TEST_CASE("mangrove: a seed decides, and roots go on below the ground when asked") {
     const Vec3 at(1.2, 2.1, 0.7);
     CHECK(shape_of(tree(""), 3)->signed_distance(at) == shape_of(tree(""), 3)->signed_distance(at));
-    CHECK(shape_of(tree(", seed: 2"), 3)->signed_distance(at) != shape_of(tree(""), 3)->signed_distance(at));
-    CHECK(shape_of(tree(", below: 0.2"), 3)->box().lo.z() < shape_of(tree(""), 3)->box().lo.z() - 0.19);
-    CHECK_FALSE(read_shape("{type: mangrove, foot: [0, 0, 0], height: 0.5, trunk_radius: 0.1, root_radius: 0.1, root_height: 0.6, spread: 1}", 3).messages().empty());
+    CHECK(shape_of(tree(", seed: 2"), 3)->signed_distance(at) !=
+          shape_of(tree(""), 3)->signed_distance(at));
+    CHECK(shape_of(tree(", below: 0.2"), 3)->box().lo.z() <
+          shape_of(tree(""), 3)->box().lo.z() - 0.19);
+    CHECK_FALSE(read_shape("{type: mangrove, foot: [0, 0, 0], height: 0.5, trunk_radius: 0.1, "
+                           "root_radius: 0.1, root_height: 0.6, spread: 1}",
+                           3)
+                    .messages()
+                    .empty());
   }
 }

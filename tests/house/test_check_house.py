@@ -55,6 +55,10 @@ class HouseRules(unittest.TestCase):
         self.expect_one("longer", src__core__a_dot_cpp="\n" * (check_house.MAX_LINES + 1))
         self.assertEqual(self.found(src__core__a_dot_cpp="\n" * check_house.MAX_LINES), [])
 
+    def test_width(self):
+        self.expect_one("wider", src__core__a_dot_cpp="/" * (check_house.MAX_COLUMNS + 1))
+        self.assertEqual(self.found(src__core__a_dot_cpp="/" * check_house.MAX_COLUMNS), [])
+
     def test_texts(self):
         self.expect_one("using namespace", src__core__a_dot_h=HEADER + "using namespace std;\n")
         self.expect_one("pragma once", src__core__a_dot_h="")

@@ -10,7 +10,8 @@ namespace {
 
 Mat3 some_gradient(double size) {
   Mat3 g;
-  for (int k = 0; k < 9; ++k) g(k / 3, k % 3) = size * (2 * random_uniform(3, static_cast<std::uint64_t>(k)) - 1);
+  for (int k = 0; k < 9; ++k)
+    g(k / 3, k % 3) = size * (2 * random_uniform(3, static_cast<std::uint64_t>(k)) - 1);
   return g;
 }
 
@@ -29,7 +30,8 @@ TEST_SUITE("materials") {
           Mat3 up = g, down = g;
           up(k, l) += d;
           down(k, l) -= d;
-          const double slope = (strain_energy_density(up, law) - strain_energy_density(down, law)) / (2 * d);
+          const double slope =
+              (strain_energy_density(up, law) - strain_energy_density(down, law)) / (2 * d);
           CHECK(slope == doctest::Approx(piola(k, l)).epsilon(1e-6));
         }
     }

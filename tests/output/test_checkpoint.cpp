@@ -63,7 +63,9 @@ TEST_SUITE("output") {
     CHECK(read_file(folder / "again.h5") == read_file(path));
   }
 
-  TEST_CASE("a large checkpoint is the same file with any number of threads, however large it was thought to be") {
+  TEST_CASE(
+      "a large checkpoint is the same file with any number of threads, however large it was "
+      "thought to be") {
     const TemporaryFolder folder;
     std::vector<double> places(3 * 300'001);
     for (std::size_t k = 0; k < places.size(); ++k) places[k] = random_uniform(7, k);
@@ -104,8 +106,10 @@ TEST_SUITE("output") {
     write_sample(folder / "c.h5", "", 1);
     const CheckpointReader file(folder / "c.h5");
     std::vector<double> four(4);
-    CHECK_THROWS_WITH_AS(file.get("sets/water/position", std::span<double>(four)), doctest::Contains("6 numbers where this run has 4"), IoError);
-    CHECK_THROWS_WITH_AS(file.get("sets/water/part", std::span<double>(four)), doctest::Contains("another kind"), IoError);
+    CHECK_THROWS_WITH_AS(file.get("sets/water/position", std::span<double>(four)),
+                         doctest::Contains("6 numbers where this run has 4"), IoError);
+    CHECK_THROWS_WITH_AS(file.get("sets/water/part", std::span<double>(four)),
+                         doctest::Contains("another kind"), IoError);
     CHECK_THROWS_WITH_AS(file.number("temperature"), doctest::Contains("'temperature'"), IoError);
   }
 
@@ -129,7 +133,8 @@ TEST_SUITE("output") {
     REQUIRE(found.warnings.size() == 1);
     CHECK(found.warnings[0].find("damaged") != std::string::npos);
     std::ofstream(previous, std::ios::binary) << "nothing";
-    CHECK_THROWS_WITH_AS(find_checkpoint(path, previous), doctest::Contains("no sound checkpoint"), IoError);
+    CHECK_THROWS_WITH_AS(find_checkpoint(path, previous), doctest::Contains("no sound checkpoint"),
+                         IoError);
   }
 
   TEST_CASE("every flipped bit and every cut is found") {
@@ -158,7 +163,8 @@ TEST_SUITE("output") {
         CHECK_THROWS_AS(CheckpointReader(bad, "bad"), IoError);
       }
     for (std::uint64_t k = 0; k < 200; ++k)
-      CHECK_THROWS_AS(CheckpointReader(whole.substr(0, random_bits(3, k) % whole.size()), "cut"), IoError);
+      CHECK_THROWS_AS(CheckpointReader(whole.substr(0, random_bits(3, k) % whole.size()), "cut"),
+                      IoError);
     CHECK_THROWS_AS(CheckpointReader("", "empty"), IoError);
   }
 

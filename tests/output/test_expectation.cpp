@@ -97,7 +97,8 @@ TEST_SUITE("output") {
         CHECK(value_of(noisy, "period") == doctest::Approx(period).epsilon(2e-2));
         CHECK(value_of(noisy, "frequency") == doctest::Approx(1 / value_of(noisy, "period")));
       }
-    CHECK_FALSE(sphgeo::reduce(sampled(40, 0.7, [](double t) { return std::sin(2 * pi * t); }), "period"));
+    CHECK_FALSE(
+        sphgeo::reduce(sampled(40, 0.7, [](double t) { return std::sin(2 * pi * t); }), "period"));
     CHECK_FALSE(sphgeo::reduce(sampled(40, 1, [](double) { return 1; }), "period"));
   }
 

@@ -76,7 +76,8 @@ TEST_SUITE("output") {
     const auto* first = reinterpret_cast<const char*>(random.data());
     const char* whole_page = first + (page - reinterpret_cast<std::uintptr_t>(first) % page) % page;
     for (const char* from : {whole_page, whole_page + 8})
-      for (const std::string& before : {std::string(), std::string(page, 'b'), std::string("line\n")}) {
+      for (const std::string& before :
+           {std::string(), std::string(page, 'b'), std::string("line\n")}) {
         AtomicFile file(folder / "a");
         file.write(before);
         file.write(from, bytes);
@@ -92,7 +93,10 @@ TEST_SUITE("output") {
                 file.write(whole_page, bytes);
                 file.commit();
               });
-              return what.find("cannot write (6291579 bytes needed)") != std::string::npos && !fs::exists(folder / "b") ? 7 : 1;
+              return what.find("cannot write (6291579 bytes needed)") != std::string::npos &&
+                             !fs::exists(folder / "b")
+                         ? 7
+                         : 1;
             }) == 7);
     CHECK(folder.entries() == 1);
   }
@@ -144,7 +148,8 @@ TEST_SUITE("output") {
     CHECK(again.frames()[1].time == 0.1 + 0.2);
     CHECK(again.frames()[1].file == "a&\"b\".vtu");
     CHECK(read_file(folder / "water.pvd").find("late.vtu") == std::string::npos);
-    pvd.add(1, "anew.vtu");  // what is written again from an earlier time on replaces the old frames
+    pvd.add(1,
+            "anew.vtu");  // what is written again from an earlier time on replaces the old frames
     CHECK(pvd.frames().size() == 3);
     CHECK(pvd.frames().back().file == "anew.vtu");
     pvd.add(2, "anew.vtu");  // something at rest is written once and named at every time
@@ -230,8 +235,9 @@ TEST_SUITE("output") {
     write_file_atomically(folder / "file", "x");
     CHECK(io_failure([&] { RunFolder run(folder / "file"); }).find("Not a directory") !=
           std::string::npos);
-    CHECK(io_failure([&] { RunFolder run(folder / "file/none"); }).find("cannot create the folder") !=
-          std::string::npos);
+    CHECK(io_failure([&] {
+            RunFolder run(folder / "file/none");
+          }).find("cannot create the folder") != std::string::npos);
   }
 
   TEST_CASE("names of the deck become safe file names") {

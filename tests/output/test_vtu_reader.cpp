@@ -71,7 +71,9 @@ TEST_SUITE("output") {
         CHECK(frame.find("id")->values == std::vector<double>(s.id.begin(), s.id.end()));
         CHECK(frame.find("part")->values == std::vector<double>(s.part.begin(), s.part.end()));
         CHECK(frame.find("nothing") == nullptr);
-        if (n > 2) CHECK(frame.find("velocity")->magnitude(2) == doctest::Approx(std::sqrt(2 * 2 + 2.25 * 2.25 + 2.5 * 2.5)));
+        if (n > 2)
+          CHECK(frame.find("velocity")->magnitude(2) ==
+                doctest::Approx(std::sqrt(2 * 2 + 2.25 * 2.25 + 2.5 * 2.5)));
       }
   }
 
@@ -98,7 +100,8 @@ TEST_SUITE("output") {
     const Sample s(4);
     const std::vector<Index> corners{0, 1, 2, 1, 2, 3};
     const std::vector<std::int32_t> part{4, 5};
-    write_vtu_mesh(folder / "a.vtu", s.points, 3, corners, {}, {{"part", "", 1, std::span<const std::int32_t>(part)}});
+    write_vtu_mesh(folder / "a.vtu", s.points, 3, corners, {},
+                   {{"part", "", 1, std::span<const std::int32_t>(part)}});
     const VtuFrame frame = read_vtu(folder / "a.vtu");
     CHECK(frame.corners_per_cell == 3);
     CHECK(frame.corners == corners);
@@ -128,11 +131,14 @@ TEST_SUITE("output") {
     refused(replaced(good, "UnstructuredGrid", "PolyData"), "no unstructured grid");
     refused(replaced(good, "ZLib", "LZ4"), "compressor");
     refused(replaced(good, "NumberOfPoints=\"3000\"", "NumberOfPoints=\"3001\""), "not as long");
-    refused(replaced(good, "NumberOfPoints=\"3000\"", "NumberOfPoints=\"99999999999999999\""), "too much memory");
+    refused(replaced(good, "NumberOfPoints=\"3000\"", "NumberOfPoints=\"99999999999999999\""),
+            "too much memory");
     refused(replaced(good, "NumberOfPoints=\"3000\"", "NumberOfPoints=\"3e3\""), "no number");
     refused(replaced(good, "NumberOfComponents=\"3\"", "NumberOfComponents=\"0\""), "components");
     refused(replaced(good, "offset=\"0\"", "offset=\"99999999\""), "beyond the end");
-    refused(replaced(good, "type=\"Float32\" Name=\"velocity\"", "type=\"Float16\" Name=\"velocity\""), "type");
+    refused(
+        replaced(good, "type=\"Float32\" Name=\"velocity\"", "type=\"Float16\" Name=\"velocity\""),
+        "type");
     refused(good.substr(0, good.size() / 2), "damaged");
     std::string flipped = good;
     flipped[good.find("\n_") + 60] ^= 0x10;  // in the packed ids

@@ -35,13 +35,23 @@ inline const FakeSpec& fake(int k) {
       {"twins", "fake_twin_2", Stage::force, {{&fields::volume, write}}},
       {"two_stages", "fake_stage_1", Stage::predict, {{&fields::volume, write}}},
       {"two_stages", "fake_stage_2", Stage::observe, {{&fields::volume, write}}},
-      {"cycle", "fake_cycle_1", Stage::force, {{&fields::volume, write}, {&fields::pressure, read}}},
-      {"cycle", "fake_cycle_2", Stage::force, {{&fields::pressure, write}, {&fields::volume, read}}},
+      {"cycle",
+       "fake_cycle_1",
+       Stage::force,
+       {{&fields::volume, write}, {&fields::pressure, read}}},
+      {"cycle",
+       "fake_cycle_2",
+       Stage::force,
+       {{&fields::pressure, write}, {&fields::volume, read}}},
       {"lonely_add", "fake_lonely_add", Stage::force, {{&fields::pressure, add}}},
       {"lonely_add", "fake_early_write", Stage::predict, {{&fields::pressure, write}}},
       // A chain: y is made from x.
       {"chain", "fake_makes_x", Stage::observe, {{&fields::volume, write}}, true},
-      {"chain", "fake_makes_y", Stage::observe, {{&fields::wall_force, write}, {&fields::volume, read}}, true},
+      {"chain",
+       "fake_makes_y",
+       Stage::observe,
+       {{&fields::wall_force, write}, {&fields::volume, read}},
+       true},
       {"chain", "fake_always", Stage::force, {{&fields::density, update}}},
       // The same field in a stage before: what observers need does not serve the step.
       {"late", "fake_late_support", Stage::observe, {{&fields::volume, write}}, true},
@@ -66,7 +76,8 @@ struct FakeCase {
     std::string acts_on() const override { return fake(K).scenario; }
     Needs needs() const override {
       Needs n;
-      for (const auto& [field, access] : fake(K).fields) n.fields.push_back({fake(K).scenario, field, access});
+      for (const auto& [field, access] : fake(K).fields)
+        n.fields.push_back({fake(K).scenario, field, access});
       if (fake(K).with_list) n.lists.push_back({fake(K).scenario, fake(K).scenario});
       return n;
     }

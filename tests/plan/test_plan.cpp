@@ -21,7 +21,8 @@ std::size_t register_fakes(std::integer_sequence<int, K...>) {
 }
 const std::size_t fake_count = register_fakes(std::make_integer_sequence<int, test::fakes>());
 
-const char* const empty_deck = "dimension: 2\nresolution: 0.1\nend_time: 1\nmaterials: [{name: water, type: water}]\n";
+const char* const empty_deck =
+    "dimension: 2\nresolution: 0.1\nend_time: 1\nmaterials: [{name: water, type: water}]\n";
 
 // A world with one set of two particles, named after the scenario.
 struct FakeWorld {
@@ -77,7 +78,8 @@ end_time: 1
 materials: [{name: water, type: water}]
 bodies: [{name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [0.4, 0.1, 0.3]}}]
 )";
-const char* const pool_walls = "boundaries: [{name: tank, type: tank, min: [0, 0, 0], max: [0.4, 0.1, 0.4]}]\n";
+const char* const pool_walls =
+    "boundaries: [{name: tank, type: tank, min: [0, 0, 0], max: [0.4, 0.1, 0.4]}]\n";
 
 }  // namespace
 
@@ -86,7 +88,8 @@ TEST_SUITE("plan") {
     REQUIRE(fake_count == test::fakes);
     FakeWorld f("order");
     Plan<2> plan(f.world, {});
-    CHECK(names(plan) == std::vector<std::string>{"fake_e_early", "fake_d_write", "fake_c_add", "fake_b_update", "fake_a_read"});
+    CHECK(names(plan) == std::vector<std::string>{"fake_e_early", "fake_d_write", "fake_c_add",
+                                                  "fake_b_update", "fake_a_read"});
     // Fields and lists are the union of what the effects need.
     CHECK(f.world.set("order").has(fields::pressure));
     CHECK(f.world.set("order").has(fields::density));
@@ -114,11 +117,13 @@ TEST_SUITE("plan") {
   }
 
   TEST_CASE("a derived field without a producer names effect, field and set") {
-    CHECK(says(complaint("missing"), {"'fake_missing'", "'volume'", "'missing'", "no effect computes"}));
+    CHECK(says(complaint("missing"),
+               {"'fake_missing'", "'volume'", "'missing'", "no effect computes"}));
   }
 
   TEST_CASE("two producers in one stage are refused, in two stages they are fine") {
-    CHECK(says(complaint("twins"), {"'fake_twin_1'", "'fake_twin_2'", "'volume'", "'twins'", "'force'"}));
+    CHECK(says(complaint("twins"),
+               {"'fake_twin_1'", "'fake_twin_2'", "'volume'", "'twins'", "'force'"}));
     CHECK(complaint("two_stages") == "none");
   }
 
@@ -130,8 +135,10 @@ TEST_SUITE("plan") {
     CHECK(says(complaint("lonely_add"), {"'fake_lonely_add'", "'pressure'", "'force'"}));
   }
 
-  TEST_CASE("a wish for a field that nobody computes names who wishes; an optional one is left out") {
-    CHECK(says(complaint("order", {{"order", "volume", "probe gauge", false}}), {"probe gauge", "'volume'", "'order'"}));
+  TEST_CASE(
+      "a wish for a field that nobody computes names who wishes; an optional one is left out") {
+    CHECK(says(complaint("order", {{"order", "volume", "probe gauge", false}}),
+               {"probe gauge", "'volume'", "'order'"}));
     CHECK(complaint("order", {{"order", "volume", "frames", true}}) == "none");
   }
 
@@ -140,7 +147,8 @@ TEST_SUITE("plan") {
       FakeWorld f("chain");
       Plan<2> plan(f.world, {});
       CHECK(names(plan) == std::vector<std::string>{"fake_always"});
-      CHECK(reason_not_used(plan, "fake_makes_x").find("no effect, probe or frame") != std::string::npos);
+      CHECK(reason_not_used(plan, "fake_makes_x").find("no effect, probe or frame") !=
+            std::string::npos);
       CHECK_FALSE(f.world.set("chain").has(fields::volume));
     }
     {
@@ -164,7 +172,8 @@ TEST_SUITE("plan") {
     Rig<2> free(pool);
     free.plan_it();
     for (const auto& e : free.plan->effects()) CHECK(e.info.name.find("wall") == std::string::npos);
-    for (const char* name : {"wall_state", "wall_motion", "wall_reaction", "water_wall_force", "water_wall_continuity"})
+    for (const char* name : {"wall_state", "wall_motion", "wall_reaction", "water_wall_force",
+                             "water_wall_continuity"})
       CHECK_FALSE(reason_not_used(*free.plan, name).empty());
     CHECK(free.world.find("walls") == nullptr);
     CHECK(free.world.lists().size() == 1);
@@ -177,7 +186,8 @@ TEST_SUITE("plan") {
     CHECK_FALSE(walled.world.lists().contains({"walls", "water"}));
   }
 
-  TEST_CASE("a force probe pulls in the reaction on the walls, with its list and the pressure it needs") {
+  TEST_CASE(
+      "a force probe pulls in the reaction on the walls, with its list and the pressure it needs") {
     const std::string deck = std::string(pool) + pool_walls;
     Rig<2> without(deck);
     without.plan_it();
@@ -190,12 +200,14 @@ TEST_SUITE("plan") {
     CHECK(runs(*with.plan, "water_pressure"));
     CHECK(with.world.lists().contains({"walls", "water"}));
     const auto all = names(*with.plan);
-    CHECK(std::find(all.begin(), all.end(), "water_pressure") < std::find(all.begin(), all.end(), "wall_reaction"));
+    CHECK(std::find(all.begin(), all.end(), "water_pressure") <
+          std::find(all.begin(), all.end(), "wall_reaction"));
   }
 
   TEST_CASE("a moving wall binds its motion") {
     Rig<2> rig(std::string(pool) +
-               "boundaries: [{name: piston, type: wall, shape: {type: box, min: [-0.5, 0, 0], max: [0, 0.1, 0.4]}, "
+               "boundaries: [{name: piston, type: wall, shape: {type: box, min: [-0.5, 0, 0], max: "
+               "[0, 0.1, 0.4]}, "
                "motion: {displacement: [0.1*t, 0, 0]}}]\n");
     rig.plan_it();
     CHECK(runs(*rig.plan, "wall_motion"));

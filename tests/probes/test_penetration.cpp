@@ -27,7 +27,8 @@ probes:
   - {{name: of_block, type: penetration, body: block}}
   - {{name: of_far, type: penetration, body: far}}
   - {{name: of_all, type: penetration}}
-)", dimension, lift, lift + 1, aside, aside + 1);
+)",
+                     dimension, lift, lift + 1, aside, aside + 1);
 }
 
 // What the probe says of the block that is moved as a whole, to (dx, dz) from its place.
@@ -57,14 +58,19 @@ template <int Dim>
 void check_depths() {
   CHECK(depth<Dim>(0, 0) == 0);
   CHECK(depth<Dim>(0, -0.95) == 0);
-  CHECK(depth<Dim>(0, -1) < 1e-9);                                        // it stands on the floor
+  CHECK(depth<Dim>(0, -1) < 1e-9);  // it stands on the floor
   CHECK(depth<Dim>(0, -1.03) == doctest::Approx(0.03).epsilon(1e-6));
-  CHECK(depth<Dim>(0.05, -1.03) == doctest::Approx(0.03).epsilon(1e-6));  // between the rows of the floor
+  CHECK(depth<Dim>(0.05, -1.03) ==
+        doctest::Approx(0.03).epsilon(1e-6));  // between the rows of the floor
   CHECK(depth<Dim>(0.05, -1.15) == doctest::Approx(0.15).epsilon(1e-6));
-  CHECK(depth<Dim>(2.04, 1) == doctest::Approx(0.04).epsilon(0.15));      // side into side, with edges flush: the normals are oblique there
+  CHECK(depth<Dim>(2.04, 1) ==
+        doctest::Approx(0.04).epsilon(
+            0.15));  // side into side, with edges flush: the normals are oblique there
   CHECK(depth<Dim>(1.9, 1.05) == 0);
-  // On its edge, which is half a spacing of its diagonal inside of what a ball of a spacing's width takes up.
-  const double turned = depth<Dim>(0.013, -1.5 + 0.5 * std::sqrt(2.0) - 0.03, 0.25 * 3.14159265358979);
+  // On its edge, which is half a spacing of its diagonal inside of what a ball of a spacing's width
+  // takes up.
+  const double turned =
+      depth<Dim>(0.013, -1.5 + 0.5 * std::sqrt(2.0) - 0.03, 0.25 * 3.14159265358979);
   CHECK(turned > 0.0);
   CHECK(turned < 0.06);
 }

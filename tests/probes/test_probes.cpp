@@ -26,7 +26,8 @@ bodies:
     {}
 numerics: {{transport_velocity: false}}
 probes:
-{})", dimension, body, probes);
+{})",
+                     dimension, body, probes);
 }
 
 const char* const flat_points = R"(
@@ -59,7 +60,8 @@ void check_fit() {
     const auto& probe = dynamic_cast<const Probe&>(*rig.model.probes[k]);
     REQUIRE(out[0].has_value());
     CHECK(*out[0] == doctest::Approx(p(probe.places()[0])).epsilon(1e-9));
-    // The share of the kernel: all inside, a half on a face, a quarter on an edge, an eighth in a corner of 3D.
+    // The share of the kernel: all inside, a half on a face, a quarter on an edge, an eighth in a
+    // corner of 3D.
     const double full = k == 0 ? 1 : k < 3 ? 0.5 : Dim == 2 ? 0.25 : 0.125;
     CHECK(*out[1] == doctest::Approx(full).epsilon(0.2));
   }
@@ -67,7 +69,8 @@ void check_fit() {
   const Vec3 expected = v(dynamic_cast<const Probe&>(*rig.model.probes[4]).places()[0]);
   REQUIRE(speed.size() == Dim);
   for (int k = 0; k < Dim; ++k)
-    CHECK(*speed[static_cast<std::size_t>(k)] == doctest::Approx(to_scene<Dim>(expected)[k]).epsilon(1e-9));
+    CHECK(*speed[static_cast<std::size_t>(k)] ==
+          doctest::Approx(to_scene<Dim>(expected)[k]).epsilon(1e-9));
   // No support: empty, not zero.
   CHECK_FALSE(rig.sample(5)[0].has_value());
   CHECK(*rig.sample(5)[1] == 0.0);
@@ -95,15 +98,17 @@ TEST_SUITE("probes") {
     for (std::size_t k = 0; k < 4; ++k) {
       const Vec3 x = dynamic_cast<const Probe&>(*rig.model.probes[k]).places()[0];
       REQUIRE(rig.sample(k)[0].has_value());
-      CHECK(*rig.sample(k)[0] == doctest::Approx(100 + 30 * x.x() - 70 * x.y() - 900 * x.z()).epsilon(1e-9));
+      CHECK(*rig.sample(k)[0] ==
+            doctest::Approx(100 + 30 * x.x() - 70 * x.y() - 900 * x.z()).epsilon(1e-9));
     }
     CHECK(rig.sample(4).size() == 3);
   }
 
   TEST_CASE("the water level of a lattice block is its top to a tenth of a spacing") {
-    Rig<2> rig(pool(2, "  - {name: a, type: water_level, at: [0.5, 0, 0]}\n"
-                       "  - {name: b, type: water_level, at: [0.513, 0, 7]}\n"
-                       "  - {name: dry, type: water_level, at: [3, 0, 0]}\n"));
+    Rig<2> rig(pool(2,
+                    "  - {name: a, type: water_level, at: [0.5, 0, 0]}\n"
+                    "  - {name: b, type: water_level, at: [0.513, 0, 7]}\n"
+                    "  - {name: dry, type: water_level, at: [3, 0, 0]}\n"));
     rig.plan_it();
     rig.freeze();
     const double a = *rig.sample(0)[0], b = *rig.sample(1)[0];
@@ -129,12 +134,14 @@ TEST_SUITE("probes") {
   }
 
   TEST_CASE("the front is the foremost particle plus half a spacing, in a direction and a region") {
-    Rig<2> rig(pool(2, "  - {name: right, type: front}\n"
-                       "  - {name: up, type: front, direction: [0, 0, 2]}\n"
-                       "  - {name: left, type: front, direction: [-1, 0, 0]}\n"
-                       "  - {name: part, type: front, region_min: [0, 0, 0], region_max: [0.5, 1, 0.3]}\n"
-                       "  - {name: none, type: front, region_min: [2, 0, 0]}\n"
-                       "  - {name: slant, type: front, direction: [1, 0, 1]}\n"));
+    Rig<2> rig(
+        pool(2,
+             "  - {name: right, type: front}\n"
+             "  - {name: up, type: front, direction: [0, 0, 2]}\n"
+             "  - {name: left, type: front, direction: [-1, 0, 0]}\n"
+             "  - {name: part, type: front, region_min: [0, 0, 0], region_max: [0.5, 1, 0.3]}\n"
+             "  - {name: none, type: front, region_min: [2, 0, 0]}\n"
+             "  - {name: slant, type: front, direction: [1, 0, 1]}\n"));
     rig.plan_it();
     CHECK(*rig.sample(0)[0] == doctest::Approx(1.0));
     CHECK(*rig.sample(1)[0] == doctest::Approx(0.8));
@@ -147,8 +154,10 @@ TEST_SUITE("probes") {
   TEST_CASE("the moments of a disc, an ellipse and a ball give their semi-axes back") {
     const std::string probe = "  - {name: m, type: moments}\n";
     const auto deck = [&](int dim, const std::string& shape, double dp) {
-      return fmt::format("dimension: {}\nresolution: {}\nend_time: 1\nmaterials: [{{name: w, type: water}}]\n"
-                         "bodies: [{{name: b, material: w, shape: {}}}]\nprobes:\n{}", dim, dp, shape, probe);
+      return fmt::format(
+          "dimension: {}\nresolution: {}\nend_time: 1\nmaterials: [{{name: w, type: water}}]\n"
+          "bodies: [{{name: b, material: w, shape: {}}}]\nprobes:\n{}",
+          dim, dp, shape, probe);
     };
     Rig<2> disc(deck(2, "{type: sphere, center: [0.3, 0, 0.7], radius: 0.5}", 0.02));
     disc.plan_it();
@@ -173,11 +182,13 @@ TEST_SUITE("probes") {
   }
 
   TEST_CASE("the flux of a uniform stream is speed times area") {
-    const std::string probes = "  - {name: all, type: flux, point: [0.5, 0.25, 0], normal: [3, 0, 0]}\n"
-                               "  - {name: back, type: flux, point: [0.5, 0.25, 0], normal: [-1, 0, 0]}\n"
-                               "  - {name: low, type: flux, point: [0.437, 0, 0], normal: [1, 0, 0], region_min: [0, 0, 0], region_max: [1, 1, 0.4]}\n"
-                               "  - {name: up, type: flux, point: [0, 0, 0.4], normal: [0, 0, 1]}\n"
-                               "  - {name: dry, type: flux, point: [3, 0, 0], normal: [1, 0, 0]}\n";
+    const std::string probes =
+        "  - {name: all, type: flux, point: [0.5, 0.25, 0], normal: [3, 0, 0]}\n"
+        "  - {name: back, type: flux, point: [0.5, 0.25, 0], normal: [-1, 0, 0]}\n"
+        "  - {name: low, type: flux, point: [0.437, 0, 0], normal: [1, 0, 0], region_min: [0, 0, "
+        "0], region_max: [1, 1, 0.4]}\n"
+        "  - {name: up, type: flux, point: [0, 0, 0.4], normal: [0, 0, 1]}\n"
+        "  - {name: dry, type: flux, point: [3, 0, 0], normal: [1, 0, 0]}\n";
     Rig<2> rig(pool(2, probes, "velocity: [1.5, 0, -0.25]"));
     rig.plan_it();
     rig.freeze();
@@ -213,7 +224,8 @@ TEST_SUITE("probes") {
     const auto e = rig.sample(0);
     CHECK(*e[0] == doctest::Approx(0.5 * 800 * 25));
     CHECK(*e[1] == doctest::Approx(800 * 9.81 * 0.4));
-    // Integral of p / rho^2 from 1000 to 1001 with p = c0^2 (rho - rho0); about c0^2 (0.001)^2 / 2 per kg.
+    // Integral of p / rho^2 from 1000 to 1001 with p = c0^2 (rho - rho0); about c0^2 (0.001)^2 / 2
+    // per kg.
     const double per_mass = 2500 * (std::log(1.001) + 1 / 1.001 - 1);
     CHECK(*e[2] == doctest::Approx(800 * per_mass).epsilon(1e-9));
     CHECK(*e[2] == doctest::Approx(800 * 2500 * 0.5e-6).epsilon(0.01));
@@ -221,9 +233,13 @@ TEST_SUITE("probes") {
   }
 
   TEST_CASE("a force probe sums the particles of its own boundary") {
-    const std::string walls = "boundaries:\n  - {name: tank, type: tank, min: [0, 0, 0], max: [1, 0.5, 0.8]}\n"
-                              "  - {name: plate, type: wall, shape: {type: box, min: [1.5, 0, 0], max: [1.7, 1, 0.1]}}\n";
-    Rig<2> rig(pool(2, "  - {name: f, type: force, boundary: plate}\n  - {name: g, type: force, boundary: tank}\n") + walls);
+    const std::string walls =
+        "boundaries:\n  - {name: tank, type: tank, min: [0, 0, 0], max: [1, 0.5, 0.8]}\n"
+        "  - {name: plate, type: wall, shape: {type: box, min: [1.5, 0, 0], max: [1.7, 1, 0.1]}}\n";
+    Rig<2> rig(pool(2,
+                    "  - {name: f, type: force, boundary: plate}\n  - {name: g, type: force, "
+                    "boundary: tank}\n") +
+               walls);
     rig.plan_it();
     auto& force = rig.walls().vector(fields::wall_force);
     for (Index i = 0; i < force.size(); ++i) force[i] = Vec<2>(2, -3);

@@ -20,11 +20,13 @@ std::vector<Candidate> block(int n, double water) {
 }
 
 /// Variance of the number of particles in squares of 8 by 8 cells.
-double variance(const std::vector<Candidate>& all, const std::vector<std::size_t>& accepted, int n) {
+double variance(const std::vector<Candidate>& all, const std::vector<std::size_t>& accepted,
+                int n) {
   const int squares = n / 8;
   std::vector<double> count(static_cast<std::size_t>(squares * squares), 0);
   for (const std::size_t k : accepted)
-    count[static_cast<std::size_t>(static_cast<int>(all[k].at.z() / 8) * squares + static_cast<int>(all[k].at.x() / 8))] += 1;
+    count[static_cast<std::size_t>(static_cast<int>(all[k].at.z() / 8) * squares +
+                                   static_cast<int>(all[k].at.x() / 8))] += 1;
   double mean = 0, sum = 0;
   for (const double c : count) mean += c / static_cast<double>(count.size());
   for (const double c : count) sum += (c - mean) * (c - mean) / static_cast<double>(count.size());
@@ -37,11 +39,14 @@ TEST_SUITE("relax") {
   TEST_CASE("the curve visits every cell once, from neighbor to neighbor") {
     for (const int dim : {2, 3}) {
       const int bits = 3, edge = 8;
-      std::vector<std::array<int, 3>> path(static_cast<std::size_t>(dim == 2 ? edge * edge : edge * edge * edge), {-1, -1, -1});
+      std::vector<std::array<int, 3>> path(
+          static_cast<std::size_t>(dim == 2 ? edge * edge : edge * edge * edge), {-1, -1, -1});
       for (int k = 0; k < (dim == 3 ? edge : 1); ++k)
         for (int j = 0; j < edge; ++j)
           for (int i = 0; i < edge; ++i) {
-            const std::uint32_t cell[3] = {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(j), static_cast<std::uint32_t>(k)};
+            const std::uint32_t cell[3] = {static_cast<std::uint32_t>(i),
+                                           static_cast<std::uint32_t>(j),
+                                           static_cast<std::uint32_t>(k)};
             const std::uint64_t place = hilbert_index(cell, dim, bits);
             REQUIRE(place < path.size());
             CHECK(path[place][0] == -1);
@@ -90,14 +95,17 @@ TEST_SUITE("relax") {
     box.max = {0.95, 1, 0.73};
     box.flat = true;
     const WaterTarget clear(model);
-    CHECK(water_volume(candidates(box, clear, 0.1, 2, 0.5)) == doctest::Approx(0.95 * 0.73 / 0.01).epsilon(1e-9));
+    CHECK(water_volume(candidates(box, clear, 0.1, 2, 0.5)) ==
+          doctest::Approx(0.95 * 0.73 / 0.01).epsilon(1e-9));
     Sphere disc;
     disc.center = {0.3, 0, 0.2};
     disc.radius = 1;
     disc.flat = true;
-    CHECK(water_volume(candidates(disc, clear, 0.1, 2, 0.5)) == doctest::Approx(M_PI / 0.01).epsilon(2e-4));
+    CHECK(water_volume(candidates(disc, clear, 0.1, 2, 0.5)) ==
+          doctest::Approx(M_PI / 0.01).epsilon(2e-4));
     Sphere ball;
     ball.radius = 1;
-    CHECK(water_volume(candidates(ball, clear, 0.1, 3, 0.5)) == doctest::Approx(4 * M_PI / 3 / 0.001).epsilon(1e-3));
+    CHECK(water_volume(candidates(ball, clear, 0.1, 3, 0.5)) ==
+          doctest::Approx(4 * M_PI / 3 / 0.001).epsilon(1e-3));
   }
 }

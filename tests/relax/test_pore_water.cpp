@@ -19,12 +19,17 @@ namespace {
 constexpr const char* materials =
     "materials:\n"
     "  - {name: w, type: water}\n"
-    "  - {name: s, type: soil, density: 2650, youngs_modulus: 1e7, friction_angle: 0.5, skeleton: fixed}\n";
+    "  - {name: s, type: soil, density: 2650, youngs_modulus: 1e7, friction_angle: 0.5, skeleton: "
+    "fixed}\n";
 
 const std::string square = "{type: box, min: [0, 0, 0], max: [1, 1, 1]}";
 
-std::string deck(int dim, double dp, const std::string& water, const std::string& soil, const std::string& more = "") {
-  return fmt::format("dimension: {}\nresolution: {}\nend_time: 1\n{}bodies:\n  - {{name: water, material: w, shape: {}}}\n{}{}", dim, dp, materials, water, soil, more);
+std::string deck(int dim, double dp, const std::string& water, const std::string& soil,
+                 const std::string& more = "") {
+  return fmt::format(
+      "dimension: {}\nresolution: {}\nend_time: 1\n{}bodies:\n  - {{name: water, material: w, "
+      "shape: {}}}\n{}{}",
+      dim, dp, materials, water, soil, more);
 }
 std::string soil(const std::string& shape, const std::string& porosity) {
   return "  - {name: bed, material: s, shape: " + shape + ", porosity: \"" + porosity + "\"}\n";
@@ -89,7 +94,8 @@ TEST_SUITE("relax") {
     check_count(w, 0.35, 0.02, 2);
     CHECK(spread(w) < 0.015);
     for (const double z : {0.1, 0.3, 0.5, 0.7})
-      CHECK(particles_between(w, z, z + 0.2) * 0.0004 == doctest::Approx(0.2 * (0.2 + 0.3 * (z + 0.1))).epsilon(0.06));
+      CHECK(particles_between(w, z, z + 0.2) * 0.0004 ==
+            doctest::Approx(0.2 * (0.2 + 0.3 * (z + 0.1))).epsilon(0.06));
   }
 
   TEST_CASE("a step from clear water to pores within one body") {
@@ -101,21 +107,27 @@ TEST_SUITE("relax") {
     // Far above the soil the lattice is as it was.
     CHECK(w.moved < w.accepted);
     double lattice = 0;
-    for (const Vec3& p : w.particles[0]) lattice += p.z() > 0.8 && std::abs(p.z() / 0.02 - std::floor(p.z() / 0.02) - 0.5) < 1e-9;
+    for (const Vec3& p : w.particles[0])
+      lattice += p.z() > 0.8 && std::abs(p.z() / 0.02 - std::floor(p.z() / 0.02) - 0.5) < 1e-9;
     CHECK(lattice == 500);
     // A soil surface between two layers of the lattice.
-    const PoreWater odd = relaxed(deck(2, 0.02, square, soil("{type: box, min: [0, 0, 0], max: [1, 1, 0.5067]}", "0.5")));
+    const PoreWater odd = relaxed(
+        deck(2, 0.02, square, soil("{type: box, min: [0, 0, 0], max: [1, 1, 0.5067]}", "0.5")));
     check_count(odd, 1 - 0.5 * 0.5067, 0.02, 2);
     CHECK(spread(odd) < 0.03);
     // The same jump in a formula: summed over parts of a twelfth of a cell.
-    const PoreWater formula = relaxed(deck(2, 0.02, square, soil(square, "z < 0.5 ? 0.5 : 1 - 1e-9")));
+    const PoreWater formula =
+        relaxed(deck(2, 0.02, square, soil(square, "z < 0.5 ? 0.5 : 1 - 1e-9")));
     check_count(formula, 0.75, 0.02, 2);
   }
 
   TEST_CASE("two bodies of water are one where they touch") {
-    const std::string text = deck(2, 0.025, "{type: box, min: [0, 0, 0], max: [1, 1, 0.5]}", soil("{type: box, min: [0, 0, 0], max: [1, 1, 0.5]}", "0.5") +
-                                  "  - {name: above, material: w, shape: {type: box, min: [0, 0, 0.5], max: [1, 1, 1]}}\n"
-                                  "  - {name: elsewhere, material: w, shape: {type: box, min: [2, 0, 0], max: [2.5, 1, 0.5]}}\n");
+    const std::string text = deck(
+        2, 0.025, "{type: box, min: [0, 0, 0], max: [1, 1, 0.5]}",
+        soil("{type: box, min: [0, 0, 0], max: [1, 1, 0.5]}", "0.5") +
+            "  - {name: above, material: w, shape: {type: box, min: [0, 0, 0.5], max: [1, 1, 1]}}\n"
+            "  - {name: elsewhere, material: w, shape: {type: box, min: [2, 0, 0], max: [2.5, 1, "
+            "0.5]}}\n");
     const PoreWater w = relaxed(text);
     CHECK(w.bodies == std::vector<std::size_t>{0, 2});
     check_count(w, 0.75, 0.025, 2);
@@ -130,16 +142,24 @@ TEST_SUITE("relax") {
   }
 
   TEST_CASE("three dimensions, and a surface from an STL file") {
-    const PoreWater w = relaxed(deck(3, 0.06, "{type: box, min: [0, 0, 0], max: [0.96, 0.96, 0.96]}", soil(square, "0.2 + 0.3*z"), "relaxation: {steps: 60}\n"));
+    const PoreWater w =
+        relaxed(deck(3, 0.06, "{type: box, min: [0, 0, 0], max: [0.96, 0.96, 0.96]}",
+                     soil(square, "0.2 + 0.3*z"), "relaxation: {steps: 60}\n"));
     check_count(w, 0.96 * 0.96 * (0.2 * 0.96 + 0.15 * 0.96 * 0.96), 0.06, 3);
     CHECK(spread(w) < 0.03);
-    const Model ball = read_deck_text(deck(3, 0.1, "{type: stl, file: ball.stl}", soil("{type: half_space, point: [0, 0, 0], normal: [0, 0, 1]}", "0.5")), {}, "deck",
-                                      SPHGEO_SOURCE_DIR "/share/assets");
+    const Model ball =
+        read_deck_text(deck(3, 0.1, "{type: stl, file: ball.stl}",
+                            soil("{type: half_space, point: [0, 0, 0], normal: [0, 0, 1]}", "0.5")),
+                       {}, "deck", SPHGEO_SOURCE_DIR "/share/assets");
     const Aabb box = ball.bodies[0].shape->box();
     // A twentieth of its width, whatever the asset measures.
     const double dp = (box.hi.x() - box.lo.x()) / 20;
     const double middle = 0.5 * (box.lo.z() + box.hi.z());
-    const std::string text = deck(3, dp, "{type: stl, file: ball.stl}", soil(fmt::format("{{type: box, min: [-100, -100, -100], max: [100, 100, {}]}}", middle), "0.5"), "relaxation: {steps: 60}\n");
+    const std::string text = deck(
+        3, dp, "{type: stl, file: ball.stl}",
+        soil(fmt::format("{{type: box, min: [-100, -100, -100], max: [100, 100, {}]}}", middle),
+             "0.5"),
+        "relaxation: {steps: 60}\n");
     const PoreWater s = relaxed(text);
     const auto* surface = dynamic_cast<const Shape*>(ball.bodies[0].shape.get());
     REQUIRE(surface);
@@ -149,10 +169,13 @@ TEST_SUITE("relax") {
     for (int k = 0; k < n; ++k)
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) {
-          const Vec3 p = box.lo + (box.hi - box.lo).cwiseProduct(Vec3(i + 0.5, j + 0.5, k + 0.5) / n);
-          if (surface->signed_distance(p) < 0) volume += (p.z() < middle ? 0.5 : 1) * (box.hi - box.lo).prod() / (n * n * n);
+          const Vec3 p =
+              box.lo + (box.hi - box.lo).cwiseProduct(Vec3(i + 0.5, j + 0.5, k + 0.5) / n);
+          if (surface->signed_distance(p) < 0)
+            volume += (p.z() < middle ? 0.5 : 1) * (box.hi - box.lo).prod() / (n * n * n);
         }
-    CHECK(static_cast<double>(s.accepted) * std::pow(dp, 3) == doctest::Approx(volume).epsilon(2e-3));
+    CHECK(static_cast<double>(s.accepted) * std::pow(dp, 3) ==
+          doctest::Approx(volume).epsilon(2e-3));
     CHECK(std::abs(s.mass_error(std::pow(dp, 3))) <= 0.5);
     CHECK(spread(s) < 0.03);
     double above = 0;
@@ -164,7 +187,8 @@ TEST_SUITE("relax") {
   }
 
   TEST_CASE("the same bits for any number of threads, others for another seed") {
-    const std::string text = deck(2, 0.04, square, soil(square, "0.3 + 0.2*x"), "relaxation: {steps: 20}\n");
+    const std::string text =
+        deck(2, 0.04, square, soil(square, "0.3 + 0.2*x"), "relaxation: {steps: 20}\n");
     const PoreWater two = relaxed(text), other = relaxed(text, {"relaxation.seed=2"});
     set_threads(1);
     const PoreWater one = relaxed(text);
@@ -173,8 +197,10 @@ TEST_SUITE("relax") {
     set_threads(2);
     for (const PoreWater* w : {&one, &four}) {
       REQUIRE(w->accepted == two.accepted);
-      CHECK(std::memcmp(w->particles[0].data(), two.particles[0].data(), two.particles[0].size() * sizeof(Vec3)) == 0);
-      CHECK(std::memcmp(w->history.data(), two.history.data(), two.history.size() * sizeof(RelaxationStep)) == 0);
+      CHECK(std::memcmp(w->particles[0].data(), two.particles[0].data(),
+                        two.particles[0].size() * sizeof(Vec3)) == 0);
+      CHECK(std::memcmp(w->history.data(), two.history.data(),
+                        two.history.size() * sizeof(RelaxationStep)) == 0);
     }
     CHECK(other.accepted == two.accepted);
     CHECK((other.particles[0][0] - two.particles[0][0]).norm() > 0);
@@ -183,7 +209,8 @@ TEST_SUITE("relax") {
   TEST_CASE("a stored result gives the same scene, and no other deck takes it") {
     const test::TemporaryFolder folder;
     const std::string file = folder.path() + "/relaxed.h5";
-    const std::string text = deck(2, 0.05, square, soil(square, "n0*z + 0.5"), "variables: {n0: 0.1, unused: 1}\nrelaxation: {steps: 10}\n");
+    const std::string text = deck(2, 0.05, square, soil(square, "n0*z + 0.5"),
+                                  "variables: {n0: 0.1, unused: 1}\nrelaxation: {steps: 10}\n");
     const Model model = read_deck_text(text);
     Diagnostics found;
     const PoreWater water = *pore_water(model, found);
@@ -197,12 +224,14 @@ TEST_SUITE("relax") {
       const std::optional<PoreWater> taken = pore_water(other, problems);
       if (taken) {
         CHECK(taken->from_file);
-        CHECK(std::memcmp(taken->particles[0].data(), water.particles[0].data(), water.particles[0].size() * sizeof(Vec3)) == 0);
+        CHECK(std::memcmp(taken->particles[0].data(), water.particles[0].data(),
+                          water.particles[0].size() * sizeof(Vec3)) == 0);
         CHECK(taken->history.size() == 11);
         CHECK(taken->volume == water.volume);
       }
       CHECK(problems.has_errors() != taken.has_value());
-      return problems.items().empty() ? std::string() : problems.items()[0].id + " " + problems.items()[0].message;
+      return problems.items().empty() ? std::string()
+                                      : problems.items()[0].id + " " + problems.items()[0].message;
     };
     CHECK(with({}, text) == "");
     CHECK(with({"unused=3", "gravity=1", "materials[0].density=900"}, text) == "");
@@ -222,10 +251,13 @@ TEST_SUITE("relax") {
   }
 
   TEST_CASE("what cannot be filled is refused; dry soil and water beside it are no case for it") {
-    CHECK(findings(deck(2, 0.05, square, soil(square, "0.01"))) == std::vector<std::string>{"E131"});
-    CHECK(findings(deck(2, 0.05, square, soil(square, "1/(x-x)"))) == std::vector<std::string>{"E131"});
+    CHECK(findings(deck(2, 0.05, square, soil(square, "0.01"))) ==
+          std::vector<std::string>{"E131"});
+    CHECK(findings(deck(2, 0.05, square, soil(square, "1/(x-x)"))) ==
+          std::vector<std::string>{"E131"});
     CHECK(findings(deck(2, 0.05, square, soil(square, "1.5"))) == std::vector<std::string>{"E131"});
-    const std::string beside = deck(2, 0.05, square, soil("{type: box, min: [1, 0, 0], max: [2, 1, 1]}", "0.5"));
+    const std::string beside =
+        deck(2, 0.05, square, soil("{type: box, min: [1, 0, 0], max: [2, 1, 1]}", "0.5"));
     CHECK(findings(beside).empty());
     CHECK_FALSE(pore_bodies(read_deck_text(beside)).has_value());
     CHECK(expected_shares(read_deck_text(beside)) == std::vector<double>{1, 1});

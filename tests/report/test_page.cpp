@@ -7,10 +7,10 @@
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "output/pvd.h"
+#include "output/temporary_folder.h"
 #include "output/vtu.h"
 #include "report/page.h"
 #include "report/scene_pictures.h"
-#include "output/temporary_folder.h"
 
 using namespace sphgeo;
 
@@ -18,7 +18,8 @@ namespace {
 
 std::size_t count(const std::string& text, const std::string& what) {
   std::size_t n = 0;
-  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + what.size())) ++n;
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + what.size()))
+    ++n;
   return n;
 }
 
@@ -27,17 +28,38 @@ void make_run(const std::string& folder, double speed, const std::string& title 
   std::filesystem::create_directories(folder + "/frames");
   std::filesystem::create_directories(folder + "/probes");
   nlohmann::ordered_json summary = {
-      {"status", "done"}, {"version", "0.0.1"}, {"title", title}, {"dimension", 2}, {"threads", 2},
-      {"particles", {{"water", 400}}}, {"steps", {{"advection", 12}, {"acoustic", 3456}, {"solid", 0}}},
-      {"time_s", 1.5}, {"wall_s", 12.25}, {"memory_peak_bytes", 25'300'000},
+      {"status", "done"},
+      {"version", "0.0.1"},
+      {"title", title},
+      {"dimension", 2},
+      {"threads", 2},
+      {"particles", {{"water", 400}}},
+      {"steps", {{"advection", 12}, {"acoustic", 3456}, {"solid", 0}}},
+      {"time_s", 1.5},
+      {"wall_s", 12.25},
+      {"memory_peak_bytes", 25'300'000},
       {"effects", {{{"name", "water_kick"}, {"calls", 3456}, {"seconds", 10.0}, {"share", 0.8}}}},
-      {"plan", {{{"stage", "kick"}, {"name", "water_kick"}, {"equations", "Eq. 1"}, {"acts_on", "water"}, {"because", "there is <water>"}}}},
-      {"expect", {{{"name", "front"}, {"value", 0.75}, {"reference", 0.8}, {"error", 0.0625}, {"tolerance", 0.1}, {"pass", true}}}},
-      {"ledger", {{"mass", {{"unit", "kg"}, {"initial", 10.0}, {"final", 10.0}, {"relative_error", 0.0}}}}},
+      {"plan",
+       {{{"stage", "kick"},
+         {"name", "water_kick"},
+         {"equations", "Eq. 1"},
+         {"acts_on", "water"},
+         {"because", "there is <water>"}}}},
+      {"expect",
+       {{{"name", "front"},
+         {"value", 0.75},
+         {"reference", 0.8},
+         {"error", 0.0625},
+         {"tolerance", 0.1},
+         {"pass", true}}}},
+      {"ledger",
+       {{"mass", {{"unit", "kg"}, {"initial", 10.0}, {"final", 10.0}, {"relative_error", 0.0}}}}},
       {"guard", {{"tripped", false}, {"max_mach", 0.098}}}};
   write_file_atomically(folder + "/summary.json", summary.dump());
-  write_file_atomically(folder + "/probes/front.csv", "# sphgeo: front\ntime [s],position [m]\n0,0.5\n1.5,0.75\n");
-  write_file_atomically(folder + "/run.csv", "# sphgeo: run\ntime [s],kinetic [J],potential [J]\n0,0,5\n1.5,2,3\n");
+  write_file_atomically(folder + "/probes/front.csv",
+                        "# sphgeo: front\ntime [s],position [m]\n0,0.5\n1.5,0.75\n");
+  write_file_atomically(folder + "/run.csv",
+                        "# sphgeo: run\ntime [s],kinetic [J],potential [J]\n0,0,5\n1.5,2,3\n");
   PvdFile pvd(folder + "/frames/water.pvd");
   for (int k = 0; k < 3; ++k) {
     std::vector<Vec3> points;
@@ -47,7 +69,8 @@ void make_run(const std::string& folder, double speed, const std::string& title 
       for (const double v : {speed * k * i / 400, 0.0, 0.0}) velocity.push_back(v);
     }
     const std::string name = "water_" + std::to_string(k) + ".vtu";
-    write_vtu(folder + "/frames/" + name, points, {{"velocity", "m/s", 3, std::span<const double>(velocity)}});
+    write_vtu(folder + "/frames/" + name, points,
+              {{"velocity", "m/s", 3, std::span<const double>(velocity)}});
     pvd.add(0.75 * k, name);
   }
 }
@@ -67,7 +90,8 @@ TEST_SUITE("report") {
     CHECK(page.find("prefers-color-scheme: dark") != std::string::npos);
     CHECK(page.find("name=\"viewport\"") != std::string::npos);
     CHECK(count(page, "<script") == 1);
-    CHECK(page.find("<script type=\"application/json\" id=\"summary\">{\"status\":\"done\"") != std::string::npos);
+    CHECK(page.find("<script type=\"application/json\" id=\"summary\">{\"status\":\"done\"") !=
+          std::string::npos);
     CHECK(page.find("<span data-path=\"/steps/acoustic\">3\u202f456</span>") != std::string::npos);
     CHECK(page.find("data-path=\"/expect/0/value\">0.75<") != std::string::npos);
     CHECK(page.find("1 of 1 expectation met") != std::string::npos);
@@ -137,8 +161,10 @@ TEST_SUITE("report") {
     CHECK(page.find("water_1.vtu") != std::string::npos);
     CHECK(page.find("run.csv") != std::string::npos);
     CHECK(page.find("1 of 1 expectation met") != std::string::npos);
-    for (const std::string& damaged : {std::string("{\"status\": 7, \"expect\": 3, \"effects\": {\"a\": 1}, \"ledger\": [1], \"guard\": \"x\", \"plan\": [3], \"particles\": [2]}"),
-                                       std::string("[]"), std::string("{"), std::string("null")}) {
+    for (const std::string& damaged :
+         {std::string("{\"status\": 7, \"expect\": 3, \"effects\": {\"a\": 1}, \"ledger\": [1], "
+                      "\"guard\": \"x\", \"plan\": [3], \"particles\": [2]}"),
+          std::string("[]"), std::string("{"), std::string("null")}) {
       std::ofstream(folder / "summary.json") << damaged;
       page = report_page(read_runs({folder.path()}));
       CHECK(page.ends_with("</html>\n"));
@@ -153,7 +179,9 @@ TEST_SUITE("report") {
     auto summary = nlohmann::ordered_json::parse(read_file(folder / "summary.json"));
     summary["status"] = "unstable";
     summary["message"] = "set 'water' became unstable";
-    summary["guard"] = {{"tripped", true}, {"cause", "speed"}, {"effect", "water_kick"}, {"set", "water"}, {"particle", 262}, {"place", {1.012, 0.0, 0.3533}}, {"time_s", 0.916062}};
+    summary["guard"] = {{"tripped", true},   {"cause", "speed"}, {"effect", "water_kick"},
+                        {"set", "water"},    {"particle", 262},  {"place", {1.012, 0.0, 0.3533}},
+                        {"time_s", 0.916062}};
     write_file_atomically(folder / "summary.json", summary.dump());
     const std::string page = report_page(read_runs({folder.path()}));
     CHECK(page.find("class=\"badge bad\">unstable") != std::string::npos);

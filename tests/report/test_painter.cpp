@@ -23,12 +23,15 @@ Read read_png(const std::string& bytes) {
   image.version = PNG_IMAGE_VERSION;
   REQUIRE(png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()));
   image.format = PNG_FORMAT_RGBA;
-  Read out{static_cast<int>(image.width), static_cast<int>(image.height), std::vector<unsigned char>(PNG_IMAGE_SIZE(image))};
+  Read out{static_cast<int>(image.width), static_cast<int>(image.height),
+           std::vector<unsigned char>(PNG_IMAGE_SIZE(image))};
   REQUIRE(png_image_finish_read(&image, nullptr, out.rgba.data(), 0, nullptr));
   return out;
 }
 
-double lightness(const Color& c) { return 0.2126 * std::pow(c.r, 2.2) + 0.7152 * std::pow(c.g, 2.2) + 0.0722 * std::pow(c.b, 2.2); }
+double lightness(const Color& c) {
+  return 0.2126 * std::pow(c.r, 2.2) + 0.7152 * std::pow(c.g, 2.2) + 0.0722 * std::pow(c.b, 2.2);
+}
 
 std::set<int> colors_in(const Picture& p) { return {p.pixels.begin(), p.pixels.end()}; }
 
@@ -45,7 +48,7 @@ TEST_SUITE("report") {
     const std::vector<std::uint8_t> colors{0, 1};
     painter.discs(places, 0.2, colors);
     const Picture p = painter.picture();
-    CHECK(p.at(56, 81) == 1);    // 6 + 50 from the left, 6 + 75 from the top
+    CHECK(p.at(56, 81) == 1);  // 6 + 50 from the left, 6 + 75 from the top
     CHECK(p.at(156, 31) == 2);
     CHECK(p.at(56 + 9, 81) == 1);
     CHECK(p.at(56 + 11, 81) == 0);
@@ -58,12 +61,15 @@ TEST_SUITE("report") {
     const Vec3 behind = Vec3::Zero(), before = behind + 0.5 * view.toward;
     for (const bool swapped : {false, true}) {
       Painter painter(view, {Color{1, 0, 0, 1}, Color{0, 1, 0, 1}});
-      const std::vector<Vec3> places = swapped ? std::vector{before, behind} : std::vector{behind, before};
-      const std::vector<std::uint8_t> colors = swapped ? std::vector<std::uint8_t>{1, 0} : std::vector<std::uint8_t>{0, 1};
+      const std::vector<Vec3> places =
+          swapped ? std::vector{before, behind} : std::vector{behind, before};
+      const std::vector<std::uint8_t> colors =
+          swapped ? std::vector<std::uint8_t>{1, 0} : std::vector<std::uint8_t>{0, 1};
       painter.discs(places, 0.3, colors);
       painter.line({-1, 0, 0}, {1, 0, 0}, 2, 0);
       const Picture p = painter.picture();
-      const int middle = p.at(static_cast<int>(view.column(before)), static_cast<int>(view.row(before)));
+      const int middle =
+          p.at(static_cast<int>(view.column(before)), static_cast<int>(view.row(before)));
       CHECK(p.palette[static_cast<std::size_t>(middle)].g > 0.3);
       CHECK(p.palette[static_cast<std::size_t>(middle)].r == 0);
     }
@@ -111,7 +117,8 @@ TEST_SUITE("report") {
 
   TEST_CASE("equal steps of the colours are equal steps of lightness, and their ends are kept") {
     const auto colors = map_colors(21);
-    for (std::size_t k = 1; k < colors.size(); ++k) CHECK(lightness(colors[k]) > lightness(colors[k - 1]));
+    for (std::size_t k = 1; k < colors.size(); ++k)
+      CHECK(lightness(colors[k]) > lightness(colors[k - 1]));
     CHECK(css_color(map_color(-3)) == css_color(map_color(0)));
     CHECK(css_color(map_color(std::nan(""))) == css_color(map_color(0)));
     CHECK(css_color(map_color(7)) == css_color(map_color(1)));
@@ -135,12 +142,16 @@ TEST_SUITE("report") {
         };
         const Index a = at(0, 0), b = at(1, 0), c = at(1, 1), d = at(0, 1);
         // Both orders, so that normals point alike.
-        for (const Index k : side > 0 ? std::vector{a, b, c, a, c, d} : std::vector{a, c, b, a, d, c}) corners.push_back(k);
+        for (const Index k :
+             side > 0 ? std::vector{a, b, c, a, c, d} : std::vector{a, c, b, a, d, c})
+          corners.push_back(k);
       }
     CHECK(outline(points, 3, corners).size() == 12);
-    // A face without area between two others, as surfaces that were cut from a grid have, draws nothing.
+    // A face without area between two others, as surfaces that were cut from a grid have, draws
+    // nothing.
     points.push_back(points[static_cast<std::size_t>(corners[0])]);
-    for (const Index k : {corners[0], static_cast<Index>(points.size()) - 1, corners[1]}) corners.push_back(k);
+    for (const Index k : {corners[0], static_cast<Index>(points.size()) - 1, corners[1]})
+      corners.push_back(k);
     CHECK(outline(points, 3, corners).size() == 12);
     CHECK(outline(points, 2, std::vector<Index>{0, 1, 1, 2}).size() == 2);
     CHECK(outline(points, 1, {}).empty());

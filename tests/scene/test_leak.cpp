@@ -12,7 +12,8 @@ using namespace sphgeo;
 
 namespace {
 
-// Findings about leaks only, "W125 boundaries[1]" or "N126 boundaries[0].open", and the last message.
+// Findings about leaks only, "W125 boundaries[1]" or "N126 boundaries[0].open", and the last
+// message.
 struct Leaks {
   std::vector<std::string> found;
   std::string message;
@@ -22,10 +23,13 @@ struct Leaks {
 template <int Dim>
 Leaks leaks(std::string rest) {
   for (const char* name : {"front", "back"})
-    if (const auto at = rest.find(std::string("  - {name: ") + name); Dim == 2 && at != std::string::npos)
+    if (const auto at = rest.find(std::string("  - {name: ") + name);
+        Dim == 2 && at != std::string::npos)
       rest.erase(at, rest.find('\n', at) + 1 - at);
-  const std::string text = "dimension: " + std::to_string(Dim) +
-                           "\nresolution: 0.05\nend_time: 1\nmaterials: [{name: water, type: water, max_speed: 5}]\n" + rest;
+  const std::string text =
+      "dimension: " + std::to_string(Dim) +
+      "\nresolution: 0.05\nend_time: 1\nmaterials: [{name: water, type: water, max_speed: 5}]\n" +
+      rest;
   const Model model = read_deck_text(text);
   Diagnostics found;
   const Scene<Dim> scene = build_scene<Dim>(model, found);
@@ -39,7 +43,9 @@ Leaks leaks(std::string rest) {
   return l;
 }
 
-bool silent(const std::string& rest) { return leaks<2>(rest).found.empty() && leaks<3>(rest).found.empty(); }
+bool silent(const std::string& rest) {
+  return leaks<2>(rest).found.empty() && leaks<3>(rest).found.empty();
+}
 
 using Found = std::vector<std::string>;
 
@@ -50,21 +56,29 @@ std::string wall(const std::string& name, const std::string& shape, const std::s
   return "  - {name: " + name + ", type: wall, shape: " + shape + more + "}\n";
 }
 // Water from x = 0 to `x`, up to `z`.
-std::string pool(double x, double z) { return "bodies: [{name: pool, material: water, shape: " + box(0, 0, x, z) + "}]\n"; }
+std::string pool(double x, double z) {
+  return "bodies: [{name: pool, material: water, shape: " + box(0, 0, x, z) + "}]\n";
+}
 std::string tank(double x, double z, const std::string& open = "top") {
-  return fmt::format("boundaries:\n  - {{name: tank, type: tank, min: [0, 0, 0], max: [{}, 0.4, {}], open: [{}]}}\n", x, z, open);
+  return fmt::format(
+      "boundaries:\n  - {{name: tank, type: tank, min: [0, 0, 0], max: [{}, 0.4, {}], open: "
+      "[{}]}}\n",
+      x, z, open);
 }
 // A trough from walls of its own, 1 m long inside, with its right wall from `gap` above the floor.
 std::string trough(double gap, double height = 0.8) {
-  return "boundaries:\n" + wall("floor", box(-0.2, -0.2, 1.2, 0, -0.2, 0.6)) + wall("left", box(-0.2, 0, 0, height, -0.2, 0.6)) +
-         wall("right", box(1, gap, 1.2, height, -0.2, 0.6)) + wall("front", box(0, 0, 1, height, -0.2, 0)) +
+  return "boundaries:\n" + wall("floor", box(-0.2, -0.2, 1.2, 0, -0.2, 0.6)) +
+         wall("left", box(-0.2, 0, 0, height, -0.2, 0.6)) +
+         wall("right", box(1, gap, 1.2, height, -0.2, 0.6)) +
+         wall("front", box(0, 0, 1, height, -0.2, 0)) +
          wall("back", box(0, 0, 1, height, 0.4, 0.6));
 }
 
 }  // namespace
 
 TEST_SUITE("scene") {
-  TEST_CASE("a flood finds gaps of one spacing wherever they lie on the grid, and none in a lattice") {
+  TEST_CASE(
+      "a flood finds gaps of one spacing wherever they lie on the grid, and none in a lattice") {
     const double dp = 0.1;
     for (const int missing : {0, 1, 2})
       for (const double off : {0.0, 0.013, 0.025, 0.04}) {
@@ -78,7 +92,9 @@ TEST_SUITE("scene") {
               const Vec3 at((i + 0.5) * dp + off, (j + 0.5) * dp + 2 * off, (k + 0.5) * dp - off);
               const bool inside = i >= 0 && i < 6 && j >= 0 && j < 6 && k >= 0;
               if (inside && k < 4) liquid.push_back(at);
-              if (inside || (missing == 1 && i >= 6 && j == 3 && k == 1) || (missing == 2 && k < 0 && i == 2 && j == 2)) continue;
+              if (inside || (missing == 1 && i >= 6 && j == 3 && k == 1) ||
+                  (missing == 2 && k < 0 && i == 2 && j == 2))
+                continue;
               solids.push_back(at);
               frame.box.extend(at);
             }
@@ -95,8 +111,10 @@ TEST_SUITE("scene") {
         const auto way = grid.widest_way(pools[0], top);
         CHECK(way.empty() == (missing == 0));
         bool through = false;
-        const Vec3 hole = missing == 1 ? Vec3(0.65 + off, 0.35 + 2 * off, 0.15 - off) : Vec3(0.25 + off, 0.25 + 2 * off, -0.05 - off);
-        for (const auto& step : way) through = through || (step.at - hole).cwiseAbs().maxCoeff() < 0.5 * dp;
+        const Vec3 hole = missing == 1 ? Vec3(0.65 + off, 0.35 + 2 * off, 0.15 - off)
+                                       : Vec3(0.25 + off, 0.25 + 2 * off, -0.05 - off);
+        for (const auto& step : way)
+          through = through || (step.at - hole).cwiseAbs().maxCoeff() < 0.5 * dp;
         CHECK(through == (missing > 0));
       }
   }
@@ -105,7 +123,8 @@ TEST_SUITE("scene") {
     // A trough 10 cells wide and 10 high, filled with a column 3 wide and 15 high.
     FloodFrame frame{2, 0.2, 2, true, {}};
     std::vector<Vec3> solids;
-    for (double z = 0.05; z < 1; z += 0.1) solids.insert(solids.end(), {Vec3(-0.1, 0, z), Vec3(1.1, 0, z)});
+    for (double z = 0.05; z < 1; z += 0.1)
+      solids.insert(solids.end(), {Vec3(-0.1, 0, z), Vec3(1.1, 0, z)});
     for (double x = -0.1; x < 1.15; x += 0.1) solids.emplace_back(x, 0, -0.1);
     for (const Vec3& p : solids) frame.box.extend(p);
     frame.box.extend(Vec3(0.5, 0, 1.5));
@@ -122,23 +141,28 @@ TEST_SUITE("scene") {
 
   TEST_CASE("containers that hold are passed in silence") {
     CHECK(silent(pool(0.5, 0.4) + tank(1, 0.8)));
-    CHECK(silent(pool(0.5, 0.8) + tank(0.5, 0.8)));                  // full to the brim
-    CHECK(silent(pool(0.25, 0.8) + tank(2, 0.4)));                   // a column higher than the tank: it settles
+    CHECK(silent(pool(0.5, 0.8) + tank(0.5, 0.8)));  // full to the brim
+    CHECK(silent(pool(0.25, 0.8) + tank(2, 0.4)));   // a column higher than the tank: it settles
     CHECK(silent(pool(1, 0.4) + trough(0)));
-    CHECK(silent("gravity: 0\n" + pool(1, 0.4) + trough(0.1)));      // no down
-    CHECK(silent(pool(0.5, 0.4)));                                   // a drop
+    CHECK(silent("gravity: 0\n" + pool(1, 0.4) + trough(0.1)));  // no down
+    CHECK(silent(pool(0.5, 0.4)));                               // a drop
     CHECK(silent(pool(0.5, 0.4) + "boundaries:\n" + wall("plate", box(-1, -0.2, 2, 0, -1, 1))));
-    CHECK(silent(pool(0.5, 0.4) + "boundaries:\n" + wall("plate", box(-1, -0.2, 2, 0, -1, 1)) + wall("stop", box(0.5, 0, 0.7, 1, -1, 1))));
+    CHECK(silent(pool(0.5, 0.4) + "boundaries:\n" + wall("plate", box(-1, -0.2, 2, 0, -1, 1)) +
+                 wall("stop", box(0.5, 0, 0.7, 1, -1, 1))));
     // A gate that opens later, in a channel whose end is open.
-    CHECK(silent(pool(0.5, 0.4) + tank(2, 0.8, "top, right") + wall("gate", box(0.5, 0, 0.7, 0.8), ", motion: {displacement: [0, 0, 2*t]}")));
+    CHECK(silent(pool(0.5, 0.4) + tank(2, 0.8, "top, right") +
+                 wall("gate", box(0.5, 0, 0.7, 0.8), ", motion: {displacement: [0, 0, 2*t]}")));
     // A gate that starts lifted, in a closed tank.
     CHECK(silent(pool(0.5, 0.4) + tank(2, 0.8) + wall("gate", box(0.5, 0.1, 0.7, 0.8))));
     // The upper of two vessels runs out into the lower one.
-    CHECK(silent(pool(1, 0.4) + trough(0.1) + "  - {name: basin, type: tank, min: [-1, -1, -1.5], max: [3, 1.4, -0.5], open: [top]}\n"));
+    CHECK(silent(
+        pool(1, 0.4) + trough(0.1) +
+        "  - {name: basin, type: tank, min: [-1, -1, -1.5], max: [3, 1.4, -0.5], open: [top]}\n"));
   }
 
   TEST_CASE("a gap of one spacing is found with its place and the nearest boundary") {
-    const Leaks flat = leaks<2>(pool(1, 0.4) + trough(0.05)), deep = leaks<3>(pool(1, 0.4) + trough(0.05));
+    const Leaks flat = leaks<2>(pool(1, 0.4) + trough(0.05)),
+                deep = leaks<3>(pool(1, 0.4) + trough(0.05));
     CHECK(flat.found.size() == 1);
     CHECK((flat.found == Found{"W125 boundaries[2]"} || flat.found == Found{"W125 boundaries[0]"}));
     CHECK(flat.message.find("body 'pool' can run out") == 0);
@@ -156,7 +180,9 @@ TEST_SUITE("scene") {
   TEST_CASE("a scene too wide for its spacing is not searched, and that is said") {
     // A leaking trough, and a second one far away and below.
     const auto far = [](double at) {
-      return pool(1, 0.4) + trough(0.05) + wall("far", fmt::format("{{type: box, min: [{}, 0, {}], max: [{}, 0.4, {}]}}", at, -at, at + 0.2, 0.2 - at));
+      return pool(1, 0.4) + trough(0.05) +
+             wall("far", fmt::format("{{type: box, min: [{}, 0, {}], max: [{}, 0.4, {}]}}", at, -at,
+                                     at + 0.2, 0.2 - at));
     };
     const Leaks wide = leaks<2>(far(400));
     CHECK(wide.found == Found{"N127 resolution"});
@@ -168,27 +194,35 @@ TEST_SUITE("scene") {
 
   TEST_CASE("gaps in the floor, at half height and in an upright edge are found") {
     const auto floor = [](const std::string& right) {
-      return "boundaries:\n" + wall("floor", box(-0.2, -0.2, 0.5, 0, -0.2, 0.6)) + wall("floor2", box(0.6, -0.2, 1.2, 0, -0.2, 0.6)) +
-             wall("left", box(-0.2, 0, 0, 0.8, -0.2, 0.6)) + right + wall("front", box(0, 0, 1, 0.8, -0.2, 0)) + wall("back", box(0, 0, 1, 0.8, 0.4, 0.6));
+      return "boundaries:\n" + wall("floor", box(-0.2, -0.2, 0.5, 0, -0.2, 0.6)) +
+             wall("floor2", box(0.6, -0.2, 1.2, 0, -0.2, 0.6)) +
+             wall("left", box(-0.2, 0, 0, 0.8, -0.2, 0.6)) + right +
+             wall("front", box(0, 0, 1, 0.8, -0.2, 0)) + wall("back", box(0, 0, 1, 0.8, 0.4, 0.6));
     };
-    const Leaks down = leaks<3>(pool(1, 0.4) + floor(wall("right", box(1, 0, 1.2, 0.8, -0.2, 0.6))));
+    const Leaks down =
+        leaks<3>(pool(1, 0.4) + floor(wall("right", box(1, 0, 1.2, 0.8, -0.2, 0.6))));
     CHECK(down.found.size() == 1);
     CHECK(down.message.find("x = 0.5") != std::string::npos);
-    // The settled water stays below the hole, but the wave of the dam break reaches it and falls out.
-    const std::string holed = "boundaries:\n" + wall("floor", box(-0.2, -0.2, 1, 0, -0.2, 0.6)) + wall("left", box(-0.2, 0, 0, 0.8, -0.2, 0.6)) +
-                              wall("front", box(0, 0, 1, 0.8, -0.2, 0)) + wall("back", box(0, 0, 1, 0.8, 0.4, 0.6)) +
-                              wall("low", box(1, -0.2, 1.2, 0.3, -0.2, 0.6)) + wall("high", box(1, 0.4, 1.2, 0.8, -0.2, 0.6));
+    // The settled water stays below the hole, but the wave of the dam break reaches it and falls
+    // out.
+    const std::string holed =
+        "boundaries:\n" + wall("floor", box(-0.2, -0.2, 1, 0, -0.2, 0.6)) +
+        wall("left", box(-0.2, 0, 0, 0.8, -0.2, 0.6)) + wall("front", box(0, 0, 1, 0.8, -0.2, 0)) +
+        wall("back", box(0, 0, 1, 0.8, 0.4, 0.6)) + wall("low", box(1, -0.2, 1.2, 0.3, -0.2, 0.6)) +
+        wall("high", box(1, 0.4, 1.2, 0.8, -0.2, 0.6));
     CHECK(leaks<2>(pool(0.25, 0.8) + holed).found.size() == 1);
     CHECK(leaks<2>(pool(0.25, 0.8) + holed).message.find("z = 0.35") != std::string::npos);
     CHECK(leaks<2>(pool(0.25, 0.3) + holed).found.empty());
     // Front wall and right wall do not meet: a slit from floor to rim.
     std::string slit = trough(0);
-    slit.replace(slit.find(box(0, 0, 1, 0.8, -0.2, 0)), box(0, 0, 1, 0.8, -0.2, 0).size(), box(0, 0, 0.9, 0.8, -0.2, 0));
+    slit.replace(slit.find(box(0, 0, 1, 0.8, -0.2, 0)), box(0, 0, 1, 0.8, -0.2, 0).size(),
+                 box(0, 0, 0.9, 0.8, -0.2, 0));
     CHECK(leaks<3>(pool(1, 0.4) + slit).found.size() == 1);
     CHECK(leaks<2>(pool(1, 0.4) + slit).found.empty());
   }
 
-  TEST_CASE("water above a rim all around is found, a low wall on one side is not taken for a mistake") {
+  TEST_CASE(
+      "water above a rim all around is found, a low wall on one side is not taken for a mistake") {
     CHECK(leaks<2>(pool(1, 0.8) + trough(0, 0.75)).found.size() == 1);
     CHECK(silent(pool(1, 0.8) + trough(0, 0.4)));
   }
@@ -200,6 +234,10 @@ TEST_SUITE("scene") {
     CHECK(leaks<3>(pool(1, 0.4) + tank(1, 0.8, "front")).found == Found{"N126 boundaries[0].open"});
     CHECK(silent(pool(0.5, 0.4) + tank(1, 0.8, "top, right")));
     // The face opens into another boundary that holds the water.
-    CHECK(leaks<2>(pool(1, 0.4) + tank(1, 0.8, "top, right") + "  - {name: next, type: tank, min: [1, 0, 0], max: [2, 0.4, 0.8], open: [top, left]}\n").found.empty());
+    CHECK(
+        leaks<2>(
+            pool(1, 0.4) + tank(1, 0.8, "top, right") +
+            "  - {name: next, type: tank, min: [1, 0, 0], max: [2, 0.4, 0.8], open: [top, left]}\n")
+            .found.empty());
   }
 }

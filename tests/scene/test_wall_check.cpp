@@ -18,8 +18,10 @@ using Ids = std::multiset<std::string>;
 // Ids of the findings about the boundaries of a scene.
 template <int Dim = 2>
 Ids findings(const std::string& rest) {
-  const Model model = read_deck_text("dimension: " + std::to_string(Dim) + "\nresolution: 0.05\nend_time: 1\n" +
-                                     "materials: [{name: water, type: water, max_speed: 5}]\n" + rest, {}, "deck", SPHGEO_SOURCE_DIR);
+  const Model model =
+      read_deck_text("dimension: " + std::to_string(Dim) + "\nresolution: 0.05\nend_time: 1\n" +
+                         "materials: [{name: water, type: water, max_speed: 5}]\n" + rest,
+                     {}, "deck", SPHGEO_SOURCE_DIR);
   Diagnostics found;
   const Scene<Dim> scene = build_scene<Dim>(model, found);
   check_walls(scene, found);
@@ -31,12 +33,16 @@ Ids findings(const std::string& rest) {
   return ids;
 }
 
-const std::string pool = "bodies: [{name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [0.5, 0.2, 0.3]}}]\n";
+const std::string pool =
+    "bodies: [{name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [0.5, 0.2, "
+    "0.3]}}]\n";
 
 std::string wall(const std::string& name, const std::string& shape, const std::string& more = "") {
   return "  - {name: " + name + ", type: wall, shape: " + shape + more + "}\n";
 }
-std::string box(const std::string& min, const std::string& max) { return "{type: box, min: [" + min + "], max: [" + max + "]}"; }
+std::string box(const std::string& min, const std::string& max) {
+  return "{type: box, min: [" + min + "], max: [" + max + "]}";
+}
 const std::string ground = "boundaries:\n" + wall("floor", box("-1, 0, -0.2", "2, 1, 0"));
 
 }  // namespace
@@ -45,20 +51,31 @@ TEST_SUITE("scene") {
   TEST_CASE("a wall too thin to hold a particle is an error") {
     CHECK(findings(pool + ground).empty());
     CHECK(findings(pool + ground + wall("sheet", box("0.5, 0, 0", "0.52, 1, 0.5"))) == Ids{"E143"});
-    CHECK(findings(pool + ground + "  - {name: sides, type: tank, min: [0, 0, 0], max: [1, 1, 1], open: [left, right, bottom, top]}\n").empty());
+    CHECK(findings(pool + ground +
+                   "  - {name: sides, type: tank, min: [0, 0, 0], max: [1, 1, 1], open: [left, "
+                   "right, bottom, top]}\n")
+              .empty());
   }
 
-  TEST_CASE("a box-shaped wall that is no multiple of the spacing is found, in the plane of the scene") {
+  TEST_CASE(
+      "a box-shaped wall that is no multiple of the spacing is found, in the plane of the scene") {
     CHECK(findings(pool + ground + wall("stop", box("0.5, 0, 0", "0.72, 1, 0.5"))) == Ids{"W122"});
     CHECK(findings(pool + ground + wall("stop", box("0.5, 0, 0", "0.7, 1.02, 0.5"))).empty());
-    CHECK(findings<3>(pool + ground + wall("stop", box("0.5, 0, 0", "0.7, 1.02, 0.5"))) == Ids{"W122"});
+    CHECK(findings<3>(pool + ground + wall("stop", box("0.5, 0, 0", "0.7, 1.02, 0.5"))) ==
+          Ids{"W122"});
   }
 
   TEST_CASE("water deep in a solid is found, where no wall particle is") {
-    CHECK(findings(pool + "boundaries:\n" + wall("rock", box("-1, -1, -1", "2, 2, 2"))) == Ids{"E121"});
-    CHECK(findings(pool + ground + wall("high", box("-1, 0, 1", "2, 1, 2"), ", motion: {displacement: [0, 0, -t]}")).empty());
+    CHECK(findings(pool + "boundaries:\n" + wall("rock", box("-1, -1, -1", "2, 2, 2"))) ==
+          Ids{"E121"});
+    CHECK(findings(pool + ground +
+                   wall("high", box("-1, 0, 1", "2, 1, 2"), ", motion: {displacement: [0, 0, -t]}"))
+              .empty());
     // It has gone elsewhere at t = 0.
-    CHECK(findings(pool + ground + wall("block", box("-1, -1, 0", "2, 2, 2"), ", motion: {displacement: [0, 0, 1 + t]}")).empty());
+    CHECK(findings(
+              pool + ground +
+              wall("block", box("-1, -1, 0", "2, 2, 2"), ", motion: {displacement: [0, 0, 1 + t]}"))
+              .empty());
   }
 
   TEST_CASE("boundaries that overlap are joined, which is no fault") {
@@ -67,7 +84,9 @@ TEST_SUITE("scene") {
   }
 
   TEST_CASE("a probe below the surface of a boundary is found, one on it is not") {
-    const auto probe = [](const std::string& at) { return "probes: [{name: p, type: pressure, at: [" + at + "]}]\n"; };
+    const auto probe = [](const std::string& at) {
+      return "probes: [{name: p, type: pressure, at: [" + at + "]}]\n";
+    };
     CHECK(findings(pool + ground + probe("0.2, 0, 0")).empty());
     CHECK(findings(pool + ground + probe("0.2, 0, -0.02")).empty());
     CHECK(findings(pool + ground + probe("0.2, 0, -0.03")) == Ids{"W128"});
@@ -84,16 +103,23 @@ TEST_SUITE("scene") {
   }
 
   TEST_CASE("the surface of an STL boundary is inspected") {
-    CHECK(findings<3>("bodies: [{name: drop, material: water, shape: " + box("-0.1, -0.1, 0.5", "0.1, 0.1, 0.7") +
-                      "}]\nboundaries:\n" + wall("ball", "{type: stl, file: share/assets/ball.stl, scale: 2}")).empty());
+    CHECK(findings<3>("bodies: [{name: drop, material: water, shape: " +
+                      box("-0.1, -0.1, 0.5", "0.1, 0.1, 0.7") + "}]\nboundaries:\n" +
+                      wall("ball", "{type: stl, file: share/assets/ball.stl, scale: 2}"))
+              .empty());
     // A tetrahedron without one of its faces.
     const test::TemporaryFolder folder;
     std::ofstream(folder / "open.stl") << "solid s\n"
-                                          "facet normal 0 0 -1 outer loop vertex 0 0 0 vertex 0 1 0 vertex 1 0 0 endloop endfacet\n"
-                                          "facet normal 0 -1 0 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 0 1 endloop endfacet\n"
-                                          "facet normal -1 0 0 outer loop vertex 0 0 0 vertex 0 0 1 vertex 0 1 0 endloop endfacet\n"
+                                          "facet normal 0 0 -1 outer loop vertex 0 0 0 vertex 0 1 "
+                                          "0 vertex 1 0 0 endloop endfacet\n"
+                                          "facet normal 0 -1 0 outer loop vertex 0 0 0 vertex 1 0 "
+                                          "0 vertex 0 0 1 endloop endfacet\n"
+                                          "facet normal -1 0 0 outer loop vertex 0 0 0 vertex 0 0 "
+                                          "1 vertex 0 1 0 endloop endfacet\n"
                                           "endsolid s\n";
-    CHECK(findings<3>("bodies: [{name: drop, material: water, shape: " + box("0.1, 0.1, 2", "0.3, 0.3, 2.2") + "}]\nboundaries:\n" +
-                      wall("tent", "{type: stl, file: " + (folder / "open.stl") + "}")).contains("E030"));
+    CHECK(findings<3>("bodies: [{name: drop, material: water, shape: " +
+                      box("0.1, 0.1, 2", "0.3, 0.3, 2.2") + "}]\nboundaries:\n" +
+                      wall("tent", "{type: stl, file: " + (folder / "open.stl") + "}"))
+              .contains("E030"));
   }
 }

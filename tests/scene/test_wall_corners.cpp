@@ -17,20 +17,26 @@ dimension: {}
 resolution: 0.05
 end_time: 1
 materials: [{}]
-bodies: [{{name: heap, material: filling, shape: {{type: box, min: [0.5, 0, 0], max: [1, 0.5, 0.2]}}}}]
+bodies: [{{name: heap, material: filling, shape: {{type: box, min: [0.5, 0, 0], max: [1, 0.5,
+    0.2]}}}}]
 boundaries:
   - {{name: tank, type: tank, min: [0, 0, 0], max: [1, 0.5, 0.6], open: [top]}}
   - {{name: step, type: wall, shape: {{type: box, min: [0, -0.2, 0], max: [0.5, 0.7, 0.3]}}}}
-)", Dim, material);
+)",
+                     Dim, material);
 }
 
-const char* const sand = "{name: filling, type: soil, density: 2600, volume_fraction: 0.6, youngs_modulus: 5e6, friction_angle: 30 deg}";
+const char* const sand =
+    "{name: filling, type: soil, density: 2600, volume_fraction: 0.6, youngs_modulus: 5e6, "
+    "friction_angle: 30 deg}";
 
 template <int Dim>
 double corner_near(const ParticleSet<Dim>& walls, double x, double z, double y = 0.225) {
   const auto& r = walls.vector(fields::position);
   Index best = 0;
-  const auto off = [&](Index i) { return std::hypot(r[i][0] - x, r[i][Dim - 1] - z) + (Dim == 3 ? std::abs(r[i][1] - y) : 0.0); };
+  const auto off = [&](Index i) {
+    return std::hypot(r[i][0] - x, r[i][Dim - 1] - z) + (Dim == 3 ? std::abs(r[i][1] - y) : 0.0);
+  };
   for (Index i = 1; i < walls.size(); ++i)
     if (off(i) < off(best)) best = i;
   CHECK(off(best) < 0.02);
@@ -40,7 +46,8 @@ double corner_near(const ParticleSet<Dim>& walls, double x, double z, double y =
 }  // namespace
 
 TEST_SUITE("scene") {
-  TEST_CASE_TEMPLATE("wall particles behind two walls at once are marked", D, std::integral_constant<int, 2>, std::integral_constant<int, 3>) {
+  TEST_CASE_TEMPLATE("wall particles behind two walls at once are marked", D,
+                     std::integral_constant<int, 2>, std::integral_constant<int, 3>) {
     constexpr int Dim = D::value;
     Rig<Dim> rig(scene<Dim>(sand));
     const auto& walls = rig.walls();
@@ -51,7 +58,7 @@ TEST_SUITE("scene") {
     CHECK(corner_near(walls, 0.725, -0.025) == 0);  // the floor in the open
     CHECK(corner_near(walls, 0.975, -0.075) == 0);  // the floor beside the corner
     CHECK(corner_near(walls, 1.025, 0.025) == 0);
-    CHECK(corner_near(walls, 0.475, 0.275) == 0);   // the edge of the step
+    CHECK(corner_near(walls, 0.475, 0.275) == 0);  // the edge of the step
     if (Dim == 3) {
       CHECK(corner_near(walls, 1.025, 0.225, -0.025) == 1);   // an upright edge
       CHECK(corner_near(walls, 1.025, -0.025, -0.025) == 1);  // a corner of three walls
@@ -59,17 +66,22 @@ TEST_SUITE("scene") {
     }
   }
 
-  TEST_CASE("a plane of symmetry on a floor that goes on below it is no corner, however normals were turned there") {
+  TEST_CASE(
+      "a plane of symmetry on a floor that goes on below it is no corner, however normals were "
+      "turned there") {
     Rig<2> rig(fmt::format(R"(
 dimension: 2
 resolution: 0.05
 end_time: 1
 materials: [{}]
-bodies: [{{name: heap, material: filling, shape: {{type: box, min: [0, 0, 0], max: [1, 0.5, 0.2]}}}}]
+bodies: [{{name: heap, material: filling, shape: {{type: box, min: [0, 0, 0], max: [1, 0.5,
+    0.2]}}}}]
 boundaries:
-  - {{name: symmetry, type: tank, min: [0, 0, 0], max: [2, 0.5, 0.6], open: [top, right, bottom], slip: free_slip}}
+  - {{name: symmetry, type: tank, min: [0, 0, 0], max: [2, 0.5, 0.6], open: [top, right, bottom],
+      slip: free_slip}}
   - {{name: floor, type: tank, min: [-0.3, 0, 0], max: [2, 0.5, 0.6], open: [top, left, right]}}
-)", sand));
+)",
+                           sand));
     const auto& walls = rig.walls();
     for (Index i = 0; i < walls.size(); ++i)
       if (walls.vector(fields::position)[i][1] > 0) CHECK(walls.scalar(fields::corner)[i] == 0);

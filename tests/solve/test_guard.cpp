@@ -18,14 +18,18 @@ dimension: {}
 resolution: 0.1
 end_time: 1
 materials: [{{name: water, type: water, sound_speed: 20}}]
-bodies: [{{name: pool, material: water, shape: {{type: box, min: [0, 0, 0], max: [1, 0.5, 0.5]}}, pressure: hydrostatic}}]
+bodies: [{{name: pool, material: water, shape: {{type: box, min: [0, 0, 0], max: [1, 0.5, 0.5]}},
+    pressure: hydrostatic}}]
 boundaries:
   - {{name: tank, type: tank, min: [0, 0, 0], max: [1, 0.5, 1], open: [top]}}
-  - {{name: paddle, type: wall, shape: {{type: box, min: [0.7, 0, 0.8], max: [0.8, 0.5, 1]}}, motion: {{displacement: [0.01*sin(9*t), 0, 0]}}}}
-)", dimension);
+  - {{name: paddle, type: wall, shape: {{type: box, min: [0.7, 0, 0.8], max: [0.8, 0.5, 1]}},
+      motion: {{displacement: [0.01*sin(9*t), 0, 0]}}}}
+)",
+                     dimension);
 }
 
-/// What the guard says when the run goes on for this many advection steps; nullopt when it says nothing.
+/// What the guard says when the run goes on for this many advection steps; nullopt when it says
+/// nothing.
 template <int Dim>
 std::optional<Instability> verdict(Rig<Dim>& rig, long steps, std::string* sentence = nullptr) {
   try {
@@ -53,8 +57,10 @@ void plant_everywhere() {
   int planted = 0;
   for (const auto& set : model.world.sets())
     for (const auto& [name, field] : set->fields())
-      for (const double odd : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-        if (field->spec().lifetime == Lifetime::derived) continue;  // computed anew before anyone reads it
+      for (const double odd :
+           {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        if (field->spec().lifetime == Lifetime::derived)
+          continue;  // computed anew before anyone reads it
         Rig<Dim> rig(pool(Dim));
         rig.plan_it();
         rig.advance(2);
@@ -67,10 +73,12 @@ void plant_everywhere() {
         std::string sentence;
         const long before = rig.world.clock.advection_steps;
         const auto found = verdict(rig, 1, &sentence);
-        // Motions write place, velocity, acceleration and normal of moving walls anew from what was at
-        // the start: a bad value is gone before it is used.
+        // Motions write place, velocity, acceleration and normal of moving walls anew from what was
+        // at the start: a bad value is gone before it is used.
         if (set->phase() == "wall" && !found) {
-          CHECK_MESSAGE((name == "position" || name == "velocity" || name == "acceleration" || name == "normal"), sentence);
+          CHECK_MESSAGE((name == "position" || name == "velocity" || name == "acceleration" ||
+                         name == "normal"),
+                        sentence);
           CHECK(rig.world.set("walls").vector(field->spec())[victim.size() / 2].allFinite());
           continue;
         }
@@ -85,7 +93,9 @@ void plant_everywhere() {
 }  // namespace
 
 TEST_SUITE("solve") {
-  TEST_CASE("a value that is no number is caught in the same advection step, in every field of every set") {
+  TEST_CASE(
+      "a value that is no number is caught in the same advection step, in every field of every "
+      "set") {
     plant_everywhere<2>();
     plant_everywhere<3>();
   }
@@ -105,7 +115,9 @@ TEST_SUITE("solve") {
     CHECK(seen);
   }
 
-  TEST_CASE("water faster than sound stops the run: who, where, when, whose result, which line of the deck") {
+  TEST_CASE(
+      "water faster than sound stops the run: who, where, when, whose result, which line of the "
+      "deck") {
     Rig<2> rig(pool(2), {"bodies[0].velocity=[25*x, 0, 0]"});
     rig.plan_it();
     std::string sentence;
@@ -118,7 +130,8 @@ TEST_SUITE("solve") {
     CHECK(found->place->x() == doctest::Approx(0.95));
     CHECK(found->time == 0.0);
     CHECK(found->particle);
-    for (const char* part : {"23.75 m/s", "body 'pool' (deck:6:", "sound_speed", "by effect water_kick"}) {
+    for (const char* part :
+         {"23.75 m/s", "body 'pool' (deck:6:", "sound_speed", "by effect water_kick"}) {
       CAPTURE(part);
       CHECK(sentence.find(part) != std::string::npos);
     }
@@ -149,7 +162,8 @@ TEST_SUITE("solve") {
     const StepLimits limits = rig.plan->limits();
     guard.before_step(limits, 1e-3);
     guard.before_step(limits, 2e-7);
-    CHECK_THROWS_WITH_AS(guard.before_step(limits, 5e-8), doctest::Contains("collapsed"), UnstableError);
+    CHECK_THROWS_WITH_AS(guard.before_step(limits, 5e-8), doctest::Contains("collapsed"),
+                         UnstableError);
     CHECK_THROWS_AS(guard.before_step(limits, 0.0), UnstableError);
   }
 
@@ -176,6 +190,7 @@ TEST_SUITE("solve") {
     Rig<2> strict(pool(2), {"numerics.max_lost_fraction=0.01"});
     strict.water().vector(fields::position)[0] = Vec<2>(0.5, -0.17);
     strict.plan_it();
-    CHECK_THROWS_WITH_AS(strict.stepper->guard().after_advection(), doctest::Contains("1 sit inside a wall"), UnstableError);
+    CHECK_THROWS_WITH_AS(strict.stepper->guard().after_advection(),
+                         doctest::Contains("1 sit inside a wall"), UnstableError);
   }
 }

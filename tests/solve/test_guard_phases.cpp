@@ -19,10 +19,12 @@ gravity: 9.81
 end_time: 1
 materials:
   - {name: water, type: water, sound_speed: 20}
-  - {name: sand, type: soil, density: 2650, volume_fraction: 0.6, youngs_modulus: 1e6, friction_angle: 30 deg, grain_size: 0.01}
+  - {name: sand, type: soil, density: 2650, volume_fraction: 0.6, youngs_modulus: 1e6,
+      friction_angle: 30 deg, grain_size: 0.01}
   - {name: rubber, type: elastic, density: 1000, youngs_modulus: 1e5}
 bodies:
-  - {name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [1, 0.5, 0.5]}, pressure: hydrostatic}
+  - {name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [1, 0.5, 0.5]},
+      pressure: hydrostatic}
   - {name: bed, material: sand, shape: {type: box, min: [0, 0, 0], max: [0.5, 0.5, 0.3]}}
   - {name: block, material: rubber, shape: {type: box, min: [0.6, 0, 0.5], max: [0.9, 0.5, 0.8]}}
 boundaries: [{name: tank, type: tank, min: [0, 0, 0], max: [1, 0.5, 1], open: [top]}]
@@ -47,13 +49,16 @@ void plant(ParticleSet<2>& set, const FieldSpec& spec, Index i, double odd) {
 }
 
 bool holds_numbers(const FieldSpec& spec) {
-  return spec.type == FieldType::scalar || spec.type == FieldType::vector || spec.type == FieldType::tensor;
+  return spec.type == FieldType::scalar || spec.type == FieldType::vector ||
+         spec.type == FieldType::tensor;
 }
 
 }  // namespace
 
 TEST_SUITE("solve") {
-  TEST_CASE("with all phases, a value that is no number is caught in the same advection step, or is gone before it was used") {
+  TEST_CASE(
+      "with all phases, a value that is no number is caught in the same advection step, or is gone "
+      "before it was used") {
     Rig<2> model(all_phases);
     model.plan_it();
     std::set<std::string> sets_caught;
@@ -61,7 +66,8 @@ TEST_SUITE("solve") {
     for (const auto& set : model.world.sets())
       for (const auto& [name, field] : set->fields()) {
         if (field->spec().lifetime == Lifetime::derived || !holds_numbers(field->spec())) continue;
-        for (const double odd : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+        for (const double odd :
+             {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
           Rig<2> rig(all_phases);
           rig.plan_it();
           rig.advance(2);
@@ -88,10 +94,13 @@ TEST_SUITE("solve") {
         }
       }
     CHECK(planted >= 60);
-    for (const char* set : {"water", "soil", "solids", "skin"}) CHECK_MESSAGE(sets_caught.count(set) == 1, set);
+    for (const char* set : {"water", "soil", "solids", "skin"})
+      CHECK_MESSAGE(sets_caught.count(set) == 1, set);
   }
 
-  TEST_CASE("soil and solids that are faster than sound stop the run within the step, and who they are is said") {
+  TEST_CASE(
+      "soil and solids that are faster than sound stop the run within the step, and who they are "
+      "is said") {
     for (const char* name : {"soil", "solids"}) {
       CAPTURE(name);
       Rig<2> rig(all_phases);
@@ -112,7 +121,9 @@ TEST_SUITE("solve") {
     }
   }
 
-  TEST_CASE("a step of solids that collapses stops the run, before it is cut into a thousand million parts") {
+  TEST_CASE(
+      "a step of solids that collapses stops the run, before it is cut into a thousand million "
+      "parts") {
     Rig<2> rig(all_phases);
     rig.plan_it();
     rig.advance(1);
@@ -124,7 +135,8 @@ TEST_SUITE("solve") {
       CAPTURE(odd);
       StepLimits worse = limits;
       worse.solid = odd;
-      CHECK_THROWS_WITH_AS(guard.before_step(worse, dt), doctest::Contains("the solid step collapsed"), UnstableError);
+      CHECK_THROWS_WITH_AS(guard.before_step(worse, dt),
+                           doctest::Contains("the solid step collapsed"), UnstableError);
     }
     // The real thing: an acceleration that is a number and lets no step be long enough.
     rig.world.set("solids").vector(fields::acceleration)[0] = Vec<2>(1e30, 0);
@@ -153,14 +165,16 @@ TEST_SUITE("solve") {
     }
   }
 
-  TEST_CASE("particles that come to sit inside a wall stop the run within sixteen advection steps") {
+  TEST_CASE(
+      "particles that come to sit inside a wall stop the run within sixteen advection steps") {
     Rig<2> rig(all_phases, {"numerics.max_lost_fraction=0.001"});
     rig.plan_it();
     rig.advance(1);
     const long before = rig.world.clock.advection_steps;
     std::optional<Instability> found;
     for (int step = 0; step < 16 && !found; ++step) {
-      // Deeper than half a spacing below the floor; its forces may throw it out, so it is put back each time.
+      // Deeper than half a spacing below the floor; its forces may throw it out, so it is put back
+      // each time.
       rig.soil().vector(fields::position)[0] = Vec<2>(0.5, -0.17);
       rig.soil().vector(fields::velocity)[0].setZero();
       rig.arrange();
@@ -182,7 +196,8 @@ materials:
   - {name: water, type: water, sound_speed: 20}
   - {name: rubber, type: elastic, density: 1200, youngs_modulus: 1e6}
 bodies:
-  - {name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [1, 0.5, 0.3]}, pressure: hydrostatic}
+  - {name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [1, 0.5, 0.3]},
+      pressure: hydrostatic}
   - name: shelf
     material: rubber
     shape: {type: box, min: [-0.15, 0, 0.4], max: [0.4, 0.5, 0.5]}

@@ -22,11 +22,14 @@ dimension: {}
 resolution: {}
 end_time: 1
 materials: [{{name: water, type: water}}]
-bodies: [{{name: column, material: water, shape: {{type: box, min: [0, 0, 0], max: [0.4, 0.2, 0.6]}}, pressure: hydrostatic}}]
+bodies: [{{name: column, material: water, shape: {{type: box, min: [0, 0, 0], max: [0.4, 0.2,
+    0.6]}}, pressure: hydrostatic}}]
 boundaries:
   - {{name: tank, type: tank, min: [0, 0, 0], max: [1, 0.2, 0.8], open: [top]}}
-  - {{name: gate, type: wall, shape: {{type: box, min: [0.7, 0, 0], max: [0.8, 0.2, 0.1]}}, motion: {{displacement: [0.05*sin(9*t), 0, 0]}}}}
-)", dimension, dimension == 2 ? 0.02 : 0.05);
+  - {{name: gate, type: wall, shape: {{type: box, min: [0.7, 0, 0], max: [0.8, 0.2, 0.1]}},
+      motion: {{displacement: [0.05*sin(9*t), 0, 0]}}}}
+)",
+                     dimension, dimension == 2 ? 0.02 : 0.05);
 }
 
 template <int Dim>
@@ -48,9 +51,11 @@ resolution: 0.1
 gravity: {}
 end_time: 1
 materials: [{{name: water, type: water, sound_speed: 20, viscosity: {}}}]
-bodies: [{{name: block, material: water, shape: {{type: box, min: [0, 0, 0], max: [1, 1, 1]}}, velocity: {}}}]
+bodies: [{{name: block, material: water, shape: {{type: box, min: [0, 0, 0], max: [1, 1, 1]}},
+    velocity: {}}}]
 numerics: {{pair_precision: double, transport_velocity: false}}
-)", gravity, viscosity, velocity);
+)",
+                     gravity, viscosity, velocity);
 }
 
 StepLimits limits_of(const std::string& deck, const std::vector<std::string>& overrides = {}) {
@@ -66,9 +71,9 @@ std::vector<double> times_until(double end) {
   rig.plan_it();
   std::vector<double> times;
   rig.stepper->run(end, {[&] {
-    times.push_back(rig.world.clock.time);
-    return true;
-  }});
+                     times.push_back(rig.world.clock.time);
+                     return true;
+                   }});
   return times;
 }
 
@@ -101,7 +106,8 @@ TEST_SUITE("solve") {
     const StepLimits viscous = limits_of(block("[3, 0, 4]", 0, 2000));
     CHECK(viscous.acoustic == doctest::Approx(0.4 * h / (c0 + 5)));
     CHECK(viscous.advection == doctest::Approx(0.2 * 1000 * h * h / 2000));
-    const StepLimits other = limits_of(block("[3, 0, 4]"), {"numerics.cfl_acoustic=0.3", "numerics.cfl_advection=0.1"});
+    const StepLimits other =
+        limits_of(block("[3, 0, 4]"), {"numerics.cfl_acoustic=0.3", "numerics.cfl_advection=0.1"});
     CHECK(other.acoustic == doctest::Approx(0.3 * h / (c0 + 5)));
     CHECK(other.advection == doctest::Approx(0.1 * h / 5));
     const StepLimits half = limits_of(block("[3, 0, 4]"), {"numerics.time_step_factor=0.5"});
@@ -142,11 +148,14 @@ TEST_SUITE("solve") {
   TEST_CASE("a run goes on from any acoustic step with the same bits") {
     for (const char* precision : {"single", "double"})
       for (const char* geometry : {"frozen", "current"}) {
-        const std::vector<std::string> set{std::string("numerics.pair_precision=") + precision, std::string("numerics.pair_geometry=") + geometry};
+        const std::vector<std::string> set{std::string("numerics.pair_precision=") + precision,
+                                           std::string("numerics.pair_geometry=") + geometry};
         CAPTURE(set);
         const auto until = [](Rig<2>& rig, long acoustic) {
           RunHooks hooks{[] { return true; }};
-          hooks.before_acoustic_step = [&rig, acoustic] { return rig.world.clock.acoustic_steps < acoustic; };
+          hooks.before_acoustic_step = [&rig, acoustic] {
+            return rig.world.clock.acoustic_steps < acoustic;
+          };
           CHECK_FALSE(rig.stepper->run(1e9, hooks));
         };
         // A wall swings, and the body force changes within a step.
@@ -179,7 +188,8 @@ TEST_SUITE("solve") {
     Rig<2> rig(block("[0.5, 0, 0]", 9.81));
     rig.plan_it();
     std::map<Id, Vec<2>> start;
-    for (Index i = 0; i < rig.water().size(); ++i) start[rig.water().ids()[i]] = rig.water().vector(fields::position)[i];
+    for (Index i = 0; i < rig.water().size(); ++i)
+      start[rig.water().ids()[i]] = rig.water().vector(fields::position)[i];
     rig.advance_acoustic(50);
     const double t = rig.world.clock.time;
     REQUIRE(t > 0.1);
@@ -187,12 +197,13 @@ TEST_SUITE("solve") {
     for (Index i = 0; i < rig.water().size(); ++i) {
       const Vec<2> x = start.at(rig.water().ids()[i]) + Vec<2>(0.5 * t, -0.5 * 9.81 * t * t);
       off = std::max(off, (rig.water().vector(fields::position)[i] - x).norm());
-      off_speed = std::max(off_speed, (rig.water().vector(fields::velocity)[i] - Vec<2>(0.5, -9.81 * t)).norm());
+      off_speed = std::max(
+          off_speed, (rig.water().vector(fields::velocity)[i] - Vec<2>(0.5, -9.81 * t)).norm());
     }
     CAPTURE(off);
     CAPTURE(off_speed);
-    // Not exact: the density dissipation takes its Riemann states along the hydrostatic gradient, which
-    // a falling block does not have. A tenth of a spacing and 5 % of the speed were measured.
+    // Not exact: the density dissipation takes its Riemann states along the hydrostatic gradient,
+    // which a falling block does not have. A tenth of a spacing and 5 % of the speed were measured.
     CHECK(off < 0.2 * 0.1);
     CHECK(off_speed < 0.1 * 9.81 * t);
   }
@@ -202,7 +213,8 @@ TEST_SUITE("solve") {
     rig.plan_it();
     rig.advance(1);
     const auto acoustic_step = [&] {
-      for (const Stage s : {Stage::predict, Stage::force, Stage::kick, Stage::rate, Stage::correct}) rig.plan->run(s);
+      for (const Stage s : {Stage::predict, Stage::force, Stage::kick, Stage::rate, Stage::correct})
+        rig.plan->run(s);
     };
     const auto& v = rig.water().vector(fields::velocity);
     const auto expected = [&] {
@@ -235,7 +247,8 @@ bodies:
   - {{name: block, material: water, shape: {{type: box, min: [0, 0, 0], max: [26, 26, 26]}},
      velocity: ['0.1*sin(y)', '0.1*sin(z)', '0.1*sin(x)']}}
 numerics: {{h_factor_water: {}}}
-)", h_factor));
+)",
+                             h_factor));
       rig.plan_it();
       rig.advance(2);
       const double bytes = static_cast<double>(rig.world.bytes() + rig.plan->bytes()) /
@@ -247,7 +260,8 @@ numerics: {{h_factor_water: {}}}
     }
   }
 
-  // Water that is compressed by where a light body was a step ago throws it up: this one had 60 J/m more after 0.12 s.
+  // Water that is compressed by where a light body was a step ago throws it up: this one had 60 J/m
+  // more after 0.12 s.
   TEST_CASE("a body a tenth as heavy as the water around it rises without gaining energy") {
     Rig<2> rig(R"(
 resolution: 0.02
@@ -257,7 +271,8 @@ materials:
   - {name: water, type: water}
   - {name: cork, type: rigid, density: 100}
 bodies:
-  - {name: pool, material: water, pressure: hydrostatic, around: [cork], shape: {type: box, min: [0, 0, 0], max: [0.6, 1, 0.4]}}
+  - {name: pool, material: water, pressure: hydrostatic, around: [cork], shape: {type: box,
+      min: [0, 0, 0], max: [0.6, 1, 0.4]}}
   - {name: cork, material: cork, shape: {type: box, min: [0.24, 0, 0.1], max: [0.34, 1, 0.2]}}
 boundaries:
   - {name: tank, type: tank, min: [0, 0, 0], max: [0.6, 1, 0.6], open: [top]}
@@ -275,9 +290,10 @@ probes: [{name: all, type: energy}, {name: cork, type: moments, set: solids}]
       gain = std::max(gain, total() - least);
     }
     CAPTURE(gain);
-    CHECK(gain < 0.01);                       // J/m
-    CHECK(height() > start + 0.01);           // it rises
-    // The lift less what the water takes up: never more than 900 kg/m3 times its area, times the way.
+    CHECK(gain < 0.01);              // J/m
+    CHECK(height() > start + 0.01);  // it rises
+    // The lift less what the water takes up: never more than 900 kg/m3 times its area, times the
+    // way.
     CHECK(*rig.sample(0)[0] < 900 * 9.81 * 0.01 * (height() - start));
   }
 }

@@ -147,7 +147,8 @@ void check_against_brute_force(double tolerance, double where, double box) {
 std::vector<double> all_results(const Scene<3>& scene) {
   const Mixed<3> pair{Kernel<3>(scene.h)};
   std::vector<double> out(scene.water.size() * 12, 0.0);
-  const auto pass = [&](auto number, const NeighborList& list, const auto& sources, std::size_t at) {
+  const auto pass = [&](auto number, const NeighborList& list, const auto& sources,
+                        std::size_t at) {
     using T = decltype(number);
     const auto a = scene.records<T>(scene.water, 1), b = scene.records<T>(sources, 2);
     gather<Mixed<3>::Sums>(list, a, b, pair, [&](Index i, const SumOf<3>& s) {

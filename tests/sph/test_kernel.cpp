@@ -93,7 +93,8 @@ TEST_SUITE("sph") {
     for (int k = 0; k <= 120; ++k) {
       const double r2 = 1e-4 * k;
       const double w = kernel.w(r2), d = kernel.dw_over_r(r2);
-      CHECK(kernel.w(Lanes<double>(r2))[1] == doctest::Approx(w).epsilon(1e-14).scale(kernel.factor));
+      CHECK(kernel.w(Lanes<double>(r2))[1] ==
+            doctest::Approx(w).epsilon(1e-14).scale(kernel.factor));
       CHECK(kernel.dw_over_r(Lanes<double>(r2))[0] ==
             doctest::Approx(d).epsilon(1e-14).scale(-kernel.slope));
       CHECK(kernel.w(Lanes<float>(r2))[2] == doctest::Approx(w).epsilon(1e-6).scale(kernel.factor));

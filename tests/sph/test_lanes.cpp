@@ -1,4 +1,4 @@
-#include "sph/lanes.h"
+#include "sph/append_below.h"
 
 #include <doctest/doctest.h>
 
@@ -94,7 +94,8 @@ TEST_SUITE("sph") {
     CHECK(append_below(out, values, distance, FloatLanes(2.5f), -1) == out + 2);
     CHECK(out[0] == 100);
     CHECK(out[1] == 101);
-    CHECK(append_below(out, values, distance, FloatLanes(1e9f), 101) == out + FloatLanes::width - 1);
+    CHECK(append_below(out, values, distance, FloatLanes(1e9f), 101) ==
+          out + FloatLanes::width - 1);
     CHECK(out[0] == 100);
     CHECK(out[1] == 102);
     CHECK(append_below(out, values, distance, FloatLanes(0.5f), -1) == out);

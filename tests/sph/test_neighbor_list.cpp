@@ -141,7 +141,8 @@ TEST_SUITE("sph") {
       for (int y = 0; y < 9; ++y)
         for (int x = 0; x < 9; ++x) r.push_back(dp * Vec<3>(x, y, z));
     for (const double size : {0.1, 1000.0}) {
-      const auto frame = FixedPoint<3>::fit(Vec<3>::Constant(-size), Vec<3>::Constant(size), radius);
+      const auto frame =
+          FixedPoint<3>::fit(Vec<3>::Constant(-size), Vec<3>::Constant(size), radius);
       CellGrid<3> grid;
       grid.build(r, frame, radius);
       NeighborList list;

@@ -16,7 +16,8 @@ namespace {
 /// Values f = exact + c h^p.
 std::vector<Level> ladder(const std::vector<double>& spacings, double exact, double c, double p) {
   std::vector<Level> levels;
-  for (const double h : spacings) levels.push_back({h, exact + c * std::pow(h, p), std::abs(c) * std::pow(h, p)});
+  for (const double h : spacings)
+    levels.push_back({h, exact + c * std::pow(h, p), std::abs(c) * std::pow(h, p)});
   return levels;
 }
 
@@ -44,16 +45,19 @@ TEST_CASE("spacings need not have equal ratios, and only the three finest count"
 }
 
 TEST_CASE("the worked example of Celik et al. 2008: order 1.53, 6.1685, GCI 2.2 %") {
-  // Table 1, first column: dimensionless reattachment length on 18000, 8000 and 4500 cells in two dimensions.
+  // Table 1, first column: dimensionless reattachment length on 18000, 8000 and 4500 cells in two
+  // dimensions.
   const double h1 = std::sqrt(1.0 / 18000), h2 = std::sqrt(1.0 / 8000), h3 = std::sqrt(1.0 / 4500);
-  const auto found = convergence(std::vector<Level>{{h3, 5.863, {}}, {h2, 5.972, {}}, {h1, 6.063, {}}});
+  const auto found =
+      convergence(std::vector<Level>{{h3, 5.863, {}}, {h2, 5.972, {}}, {h1, 6.063, {}}});
   CHECK(*found.order == doctest::Approx(1.53).epsilon(0.01));
   CHECK(*found.extrapolated == doctest::Approx(6.1685).epsilon(0.0005));
   CHECK(*found.gci == doctest::Approx(0.022).epsilon(0.02));
 }
 
 TEST_CASE("values that swing are called oscillatory and have half their range for uncertainty") {
-  const auto found = convergence(std::vector<Level>{{0.04, 1.2, {}}, {0.02, 0.9, {}}, {0.01, 1.0, {}}});
+  const auto found =
+      convergence(std::vector<Level>{{0.04, 1.2, {}}, {0.02, 0.9, {}}, {0.01, 1.0, {}}});
   CHECK(found.label == "oscillatory");
   CHECK_FALSE(found.order);
   CHECK_FALSE(found.extrapolated);
@@ -61,7 +65,8 @@ TEST_CASE("values that swing are called oscillatory and have half their range fo
 }
 
 TEST_CASE("values that drift apart are not in the asymptotic range, and nothing is extrapolated") {
-  const auto found = convergence(std::vector<Level>{{0.04, 1.0, {}}, {0.02, 1.1, {}}, {0.01, 1.3, {}}});
+  const auto found =
+      convergence(std::vector<Level>{{0.04, 1.0, {}}, {0.02, 1.1, {}}, {0.01, 1.3, {}}});
   CHECK(found.label == "not in the asymptotic range");
   CHECK_FALSE(found.extrapolated);
   CHECK(*found.uncertainty == doctest::Approx(3 * 0.2));
@@ -84,7 +89,8 @@ TEST_CASE("an error of rounding takes no part in the order") {
 }
 
 TEST_CASE("values equal to rounding are unchanged") {
-  const auto found = convergence(std::vector<Level>{{0.04, 1, {}}, {0.02, 1 + 1e-15, {}}, {0.01, 1, {}}});
+  const auto found =
+      convergence(std::vector<Level>{{0.04, 1, {}}, {0.02, 1 + 1e-15, {}}, {0.01, 1, {}}});
   CHECK(found.label == "unchanged");
   CHECK(*found.gci == 0);
 }

@@ -12,9 +12,12 @@ using namespace sphgeo;
 TEST_SUITE_BEGIN("study");
 
 TEST_CASE("values are split at commas that stand outside of brackets and quotes") {
-  CHECK(parse_variation("resolution=0.04, 0.02").values == std::vector<std::string>{"0.04", "0.02"});
-  CHECK(parse_variation("gravity=[0, 0, -1],[0, 0, -2]").values == std::vector<std::string>{"[0, 0, -1]", "[0, 0, -2]"});
-  CHECK(parse_variation("dp=min(1, 2),\"3, 4\"").values == std::vector<std::string>{"min(1, 2)", "\"3, 4\""});
+  CHECK(parse_variation("resolution=0.04, 0.02").values ==
+        std::vector<std::string>{"0.04", "0.02"});
+  CHECK(parse_variation("gravity=[0, 0, -1],[0, 0, -2]").values ==
+        std::vector<std::string>{"[0, 0, -1]", "[0, 0, -2]"});
+  CHECK(parse_variation("dp=min(1, 2),\"3, 4\"").values ==
+        std::vector<std::string>{"min(1, 2)", "\"3, 4\""});
   CHECK(parse_variation("a.b[0].c=x").key == "a.b[0].c");
 }
 

@@ -31,7 +31,8 @@ struct Rig {
   std::unique_ptr<Stepper<Dim>> stepper;
 
   explicit Rig(const std::string& deck, const std::vector<std::string>& overrides = {})
-      : model(read_deck_text(deck, overrides)), scene(build_scene<Dim>(model, found)),
+      : model(read_deck_text(deck, overrides)),
+        scene(build_scene<Dim>(model, found)),
         world(*scene.world) {
     // Scenes of tests are so small that threads only wait for each other.
     set_threads(1);
@@ -112,11 +113,21 @@ struct Rig {
         if (!derived_too && field->spec().lifetime == Lifetime::derived) continue;
         const auto n = static_cast<std::size_t>(set->size());
         switch (field->spec().type) {
-          case FieldType::scalar: add(set->scalar(field->spec()).data(), n * sizeof(double)); break;
-          case FieldType::vector: add(set->vector(field->spec()).data(), n * sizeof(Vec<Dim>)); break;
-          case FieldType::tensor: add(set->tensor(field->spec()).data(), n * sizeof(Sym3)); break;
-          case FieldType::tag: add(set->tag(field->spec()).data(), n * sizeof(std::int32_t)); break;
-          case FieldType::identity: add(set->ids().data(), n * sizeof(Id)); break;
+          case FieldType::scalar:
+            add(set->scalar(field->spec()).data(), n * sizeof(double));
+            break;
+          case FieldType::vector:
+            add(set->vector(field->spec()).data(), n * sizeof(Vec<Dim>));
+            break;
+          case FieldType::tensor:
+            add(set->tensor(field->spec()).data(), n * sizeof(Sym3));
+            break;
+          case FieldType::tag:
+            add(set->tag(field->spec()).data(), n * sizeof(std::int32_t));
+            break;
+          case FieldType::identity:
+            add(set->ids().data(), n * sizeof(Id));
+            break;
         }
       }
     add(&world.clock.time, sizeof(double));

@@ -2,7 +2,8 @@
 //
 //   sphgeo_same_state ONE TWO
 //
-// Exit 0 and the number of arrays and bytes that are the same, or 1 and the name of each array that differs.
+// Exit 0 and the number of arrays and bytes that are the same, or 1 and the name of each array that
+// differs.
 
 #include <hdf5.h>
 
@@ -17,15 +18,18 @@ using Arrays = std::map<std::string, std::vector<unsigned char>>;
 
 // Clocks of the machine, and lengths of tables that hold such clocks.
 bool is_clock(const std::string& name) {
-  return name.find("seconds", name.rfind('/') + 1) != std::string::npos || name == "output/run/bytes";
+  return name.find("seconds", name.rfind('/') + 1) != std::string::npos ||
+         name == "output/run/bytes";
 }
 
 herr_t take(hid_t file, const char* name, const H5O_info_t* info, void* into) {
   if (info->type != H5O_TYPE_DATASET || is_clock(name)) return 0;
-  const hid_t set = H5Dopen2(file, name, H5P_DEFAULT), type = H5Dget_type(set), space = H5Dget_space(set);
+  const hid_t set = H5Dopen2(file, name, H5P_DEFAULT), type = H5Dget_type(set),
+              space = H5Dget_space(set);
   const auto numbers = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
   std::vector<unsigned char> bytes(numbers * H5Tget_size(type));
-  const herr_t read = bytes.empty() ? 0 : H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
+  const herr_t read =
+      bytes.empty() ? 0 : H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
   bytes.push_back(static_cast<unsigned char>(H5Tget_class(type)));
   H5Sclose(space);
   H5Tclose(type);
@@ -37,7 +41,8 @@ herr_t take(hid_t file, const char* name, const H5O_info_t* info, void* into) {
 Arrays arrays_of(const char* path) {
   Arrays found;
   const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0 || H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, take, &found, H5O_INFO_BASIC) < 0) found.clear();
+  if (file < 0 || H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, take, &found, H5O_INFO_BASIC) < 0)
+    found.clear();
   if (file >= 0) H5Fclose(file);
   return found;
 }

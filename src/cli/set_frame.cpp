@@ -1,0 +1,61 @@
+#include "cli/set_frame.h"
+
+#include <cstdint>
+#include <span>
+
+#include "cli/boundary_mesh.h"
+
+namespace sphgeo {
+
+template <int Dim>
+void write_set_frame(const std::string& path, const ParticleSet<Dim>& set,
+                     const std::vector<std::string>& names, const VtuOptions& options) {
+  const auto& x = set.vector(fields::position);
+  std::vector<VtuField> columns;
+  std::vector<std::vector<double>>
+      vectors;  // three components each, kept until the file is written
+  vectors.reserve(set.fields().size());
+  const Id* ids = set.ids().data();
+  const auto n = static_cast<std::size_t>(set.size());
+  columns.push_back({"id", "", 1, std::span<const std::uint64_t>(ids, n)});
+  for (const std::string& name : names) {
+    const auto it = set.fields().find(name);
+    if (it == set.fields().end() || name == "id" || name == "position") continue;
+    const FieldSpec& spec = it->second->spec();
+    if (spec.type == FieldType::scalar)
+      columns.push_back(
+          {name, spec.unit.symbol, 1, std::span<const double>(set.scalar(spec).data(), n)});
+    else if (spec.type == FieldType::tag)
+      columns.push_back({name, "", 1, std::span<const std::int32_t>(set.tag(spec).data(), n)});
+    else if (spec.type == FieldType::tensor)
+      columns.push_back({name, spec.unit.symbol, 6,
+                         std::span<const double>(set.tensor(spec).data()->data(), 6 * n)});
+    else if (spec.type == FieldType::vector) {
+      auto& flat = vectors.emplace_back();
+      flat.reserve(3 * n);
+      const auto& values = set.vector(spec);
+      for (Index i = 0; i < set.size(); ++i) {
+        const Vec3 v = to_space<Dim>(values[i]);
+        flat.insert(flat.end(), v.data(), v.data() + 3);
+      }
+      columns.push_back({name, spec.unit.symbol, 3, std::span<const double>(flat)});
+    }
+  }
+  write_vtu(path, VtuPoints(set.size(), [&](Index i) { return to_space<Dim>(x[i]); }), columns,
+            options);
+}
+
+void write_boundary_frame(const std::string& path, const Model& model, double time) {
+  const BoundaryMesh mesh = boundary_mesh(model, time);
+  VtuOptions options;
+  options.time = time;
+  write_vtu_mesh(path, mesh.points, model.dimension, mesh.corners, {},
+                 {{"part", "", 1, std::span<const std::int32_t>(mesh.part)}}, options);
+}
+
+template void write_set_frame<2>(const std::string&, const ParticleSet<2>&,
+                                 const std::vector<std::string>&, const VtuOptions&);
+template void write_set_frame<3>(const std::string&, const ParticleSet<3>&,
+                                 const std::vector<std::string>&, const VtuOptions&);
+
+}  // namespace sphgeo

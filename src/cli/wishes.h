@@ -1,0 +1,18 @@
+#pragma once
+// What a run asks the planner for.
+
+#include <string>
+#include <vector>
+
+#include "deck/model.h"
+#include "plan/plan.h"
+
+namespace sphgeo {
+
+/// Fields that a frame of a set shows when the deck names none; `mixed`: water and soil meet.
+std::vector<std::string> usual_fields(const std::string& set, bool mixed);
+
+/// Fields that the deck's probes and frames ask for, by who asks.
+std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& sets);
+
+}  // namespace sphgeo
