@@ -10,8 +10,8 @@ TITLES = {"base": "as it is", "jitter": "worst of 10 seeds", "half_step": "half 
           "turned": "turned", "mirrored": "mirrored"}
 PREFACE = """# Stability
 
-Every deck of `decks/hard` in variants, by `share/validation/stability`; sweeps of hardness by `share/validation/stability --sweeps`. Both go
-on where they were stopped. This page is written by them.
+Every deck of `decks/hard` in variants, by `share/validation/stability`; sweeps of hardness by `share/validation/stability --sweeps`. Both continue
+from where they were stopped. This page is written by them.
 """
 
 
@@ -78,18 +78,18 @@ def decks(results, plan, options):
     command = "share/validation/stability" + (" --full" if options.full else "")
     text = [measured(command, options.sphgeo), ""]
     text += [f"{len(results)} decks, {runs} runs, {judged} claims judged: {runs - bad} runs hold, {bad} do not.", ""]
-    text += ["The number is the share of what is allowed that the worst claim takes up: 3 % is far from breaking, more than 100 % is missed.",
+    text += ["The number is the share of what is allowed that the worst claim takes up: 3 % leaves a wide margin, more than 100 % is missed.",
              "A claim of how close a value stays to a reference counts its error against the tolerance; one of a bound counts how far the value",
              "went from where it started towards the bound; one that starts beyond the bound, how far it has to go against how far it went.",
-             "Judged as well: the run ends by itself, no particle is lost, nothing is faster than sound. Jitter moves every particle by up to a",
+             "Also required: the run ends by itself, no particle is lost, no particle is faster than sound. Jitter moves every particle by up to a",
              "tenth of a spacing in each direction. Turned: by 17 degrees in the x-z plane, gravity too, so that no wall and no surface lies along the lattice.", ""]
     text += ["| deck | " + " | ".join(TITLES[g] for g in groups) + " | largest Mach number |", "|---" * (len(groups) + 2) + "|"] + rows + [""]
     if broken:
-        text += ["What does not hold:", ""] + broken + [""]
+        text += ["Missed claims:", ""] + broken + [""]
     if without:
         text += ["Variants that a deck does not have:", ""] + without + [""]
     if left:
-        text += ["Claims that are not judged, as the variant takes the ground from them:", ""]
+        text += ["Claims that do not apply to a variant:", ""]
         text += [f"- `{n}`, `{c}`, {', '.join(sorted(set(g)))}: {why}." for (n, c, why), g in sorted(left.items())] + [""]
     if not options.full:
         text += ["Shorter or coarser than shipped: " + "; ".join(f"`{n}` with {', '.join(f'`{o}`' for o in os)}" for n, os in plan["short"].items() if n in results)
