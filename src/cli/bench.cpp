@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "core/version.h"
 #include "output/summary.h"
 #include "scene/build.h"
 #include "solve/stepper.h"

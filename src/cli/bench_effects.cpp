@@ -15,6 +15,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "core/version.h"
 #include "scene/build.h"
 #include "solve/stepper.h"
 

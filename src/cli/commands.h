@@ -114,12 +114,8 @@ int show_command(const std::string& type);
 /// Prints all about all of them as Markdown.
 int reference_command();
 
-/// Threads for a scene: as many as the machine has, but no more than one per 2000 particles.
-int sensible_threads(long particles, int asked);
-
-/// The version of this build.
-const char* version();
-/// The same with commit, compiler, width of vectors, threads and libraries, as lines.
+/// The version of this build with commit, compiler, width of vectors, threads and libraries, as
+/// lines.
 std::string version_text();
 
 }  // namespace sphgeo

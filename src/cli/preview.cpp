@@ -6,11 +6,11 @@
 #include <cmath>
 #include <map>
 
-#include "cli/boundary_mesh.h"
 #include "core/atomic_file.h"
 #include "probes/probe.h"
 #include "report/painter.h"
 #include "report/scene_pictures.h"
+#include "run/boundary_mesh.h"
 
 namespace sphgeo {
 

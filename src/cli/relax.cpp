@@ -5,17 +5,18 @@
 #include <iostream>
 
 #include "cli/commands.h"
-#include "cli/forecast.h"
-#include "cli/relaxation_report.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "core/version.h"
 #include "geometry/mesh.h"
 #include "output/pvd.h"
 #include "output/run_folder.h"
 #include "output/summary.h"
 #include "output/vtu.h"
+#include "run/forecast.h"
+#include "run/relaxation_report.h"
 
 namespace sphgeo {
 namespace {

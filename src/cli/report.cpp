@@ -5,7 +5,7 @@
 #include "cli/commands.h"
 #include "core/error.h"
 #include "core/text.h"
-#include "output/forecast.h"
+#include "output/cost_figures.h"
 #include "output/run_folder.h"
 #include "report/page.h"
 

@@ -3,21 +3,22 @@
 #include <chrono>
 #include <iostream>
 #include <optional>
-#include <thread>
 
 #include "cli/commands.h"
-#include "cli/forecast.h"
-#include "cli/keeper.h"
-#include "cli/recorder.h"
-#include "cli/relaxation_report.h"
-#include "cli/wishes.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "core/version.h"
 #include "output/progress.h"
 #include "report/page.h"
+#include "run/forecast.h"
+#include "run/keeper.h"
+#include "run/recorder.h"
+#include "run/relaxation_report.h"
+#include "run/thread_count.h"
+#include "run/wishes.h"
 #include "scene/build.h"
 #include "scene/cross_check.h"
 #include "solve/stepper.h"
@@ -286,12 +287,6 @@ class DeckRun {
 };
 
 }  // namespace
-
-int sensible_threads(long particles, int asked) {
-  if (asked > 0) return asked;
-  const long cores = std::max(1u, std::thread::hardware_concurrency());
-  return static_cast<int>(std::clamp(particles / 2000, 1L, cores));
-}
 
 int run_command(const RunOptions& options) {
   const auto start = clock_type::now();

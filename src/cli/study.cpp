@@ -19,6 +19,7 @@
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/text.h"
+#include "core/version.h"
 #include "deck/model.h"
 #include "output/progress.h"
 #include "output/run_folder.h"

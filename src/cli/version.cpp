@@ -13,6 +13,7 @@
 
 #include "cli/commands.h"
 #include "core/parallel.h"
+#include "core/version.h"
 #include "sph/lanes.h"
 
 namespace sphgeo {
@@ -39,8 +40,6 @@ std::string hdf5() {
 
 }  // namespace
 
-const char* version() { return SPHGEO_VERSION; }
-
 std::string version_text() {
   // Versions of libraries are those that run where they can be asked, else those that it was built
   // with.
@@ -52,7 +51,7 @@ std::string version_text() {
       "threads    up to {}; OpenMP {} for vectors\n"
       "libraries  yaml-cpp {}, muparser {}, nlohmann-json {}.{}.{}, HDF5 {}, zlib {}, libpng {}, "
       "fmt {}.{}.{}, CLI11 {}, Eigen {}.{}.{}\n",
-      SPHGEO_VERSION, SPHGEO_COMMIT, compiler(), SPHGEO_BUILD_TYPE, SPHGEO_ARCH, 8 * lane_bytes,
+      version(), SPHGEO_COMMIT, compiler(), SPHGEO_BUILD_TYPE, SPHGEO_ARCH, 8 * lane_bytes,
       native_width<float>, native_width<double>, threads(), _OPENMP, SPHGEO_YAML_CPP, muparser(),
       NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH, hdf5(),
       zlibVersion(), png_get_libpng_ver(nullptr), FMT_VERSION / 10000, FMT_VERSION / 100 % 100,

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/types.h"
+#include "output/cost_figures.h"
 #include "output/expectation.h"
-#include "output/forecast.h"
 #include "output/time_table.h"
 
 namespace sphgeo {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/text.h"
-#include "output/forecast.h"
+#include "output/cost_figures.h"
 #include "report/markup.h"
 #include "report/page_parts.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "output/forecast.h"
+#include "output/cost_figures.h"
 #include "report/chart.h"
 #include "report/markup.h"
 #include "report/page_parts.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/text.h"
-#include "output/forecast.h"
+#include "output/cost_figures.h"
 #include "output/progress.h"
 #include "study/study.h"
 

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "cli/recorder.h"
 #include "plan/fake_effects.h"
+#include "run/recorder.h"
 #include "support/rig.h"
 
 using namespace sphgeo;

@@ -8,10 +8,11 @@ import re
 import sys
 from pathlib import Path
 
-# Lowest first; the rooms of one tuple are neighbours.
+# Lowest first; the rooms of one tuple are neighbours. `relax` is below `scene`, which places the water
+# in the pores of soil by it.
 ROOMS = [("core",), ("deck",), ("particles",), ("sph",), ("geometry", "materials"),
          ("relax",), ("boundaries", "effects", "probes"), ("scene",), ("plan",), ("solve", "output"),
-         ("report",), ("compare",), ("study",), ("cli",)]
+         ("run",), ("study", "report", "compare"), ("cli",)]
 LEVEL = {room: level for level, rooms in enumerate(ROOMS) for room in rooms}
 MAX_LINES = 400
 MAX_COLUMNS = 100

@@ -1,9 +1,9 @@
-#include "cli/set_frame.h"
+#include "run/set_frame.h"
 
 #include <cstdint>
 #include <span>
 
-#include "cli/boundary_mesh.h"
+#include "run/boundary_mesh.h"
 
 namespace sphgeo {
 

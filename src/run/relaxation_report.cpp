@@ -1,4 +1,4 @@
-#include "cli/relaxation_report.h"
+#include "run/relaxation_report.h"
 
 #include <fmt/format.h>
 

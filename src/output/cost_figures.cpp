@@ -1,4 +1,4 @@
-#include "output/forecast.h"
+#include "output/cost_figures.h"
 
 #include <fmt/format.h>
 

@@ -4,10 +4,10 @@
 
 #include <optional>
 
-#include "cli/run_output.h"
-#include "output/forecast.h"
+#include "output/cost_figures.h"
 #include "output/time_table.h"
-#include "solve/forecast.h"
+#include "run/run_output.h"
+#include "solve/run_cost.h"
 
 namespace sphgeo {
 

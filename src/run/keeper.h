@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "cli/recorder.h"
 #include "output/checkpoint.h"
+#include "run/recorder.h"
 #include "solve/stepper.h"
 
 namespace sphgeo {

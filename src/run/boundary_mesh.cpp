@@ -1,4 +1,4 @@
-#include "cli/boundary_mesh.h"
+#include "run/boundary_mesh.h"
 
 #include <algorithm>
 

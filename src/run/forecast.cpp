@@ -1,4 +1,4 @@
-#include "cli/forecast.h"
+#include "run/forecast.h"
 
 #include <fmt/format.h>
 
@@ -6,13 +6,13 @@
 #include <chrono>
 #include <cmath>
 
-#include "cli/commands.h"
-#include "cli/recorder.h"
-#include "cli/run_output.h"
-#include "cli/wishes.h"
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "run/recorder.h"
+#include "run/run_output.h"
+#include "run/thread_count.h"
+#include "run/wishes.h"
 
 namespace sphgeo {
 namespace {

@@ -1,4 +1,4 @@
-#include "solve/forecast.h"
+#include "solve/run_cost.h"
 
 #include "support/rig.h"
 

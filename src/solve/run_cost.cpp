@@ -1,4 +1,4 @@
-#include "solve/forecast.h"
+#include "solve/run_cost.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "cli/wishes.h"
+#include "run/wishes.h"
 
 #include <algorithm>
 

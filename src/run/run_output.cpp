@@ -1,11 +1,11 @@
-#include "cli/run_output.h"
+#include "run/run_output.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "cli/boundary_mesh.h"
 #include "output/vtu.h"
 #include "probes/probe.h"
+#include "run/boundary_mesh.h"
 #include "scene/build.h"
 #include "scene/world_view.h"
 

@@ -1,12 +1,12 @@
-#include "cli/keeper.h"
+#include "run/keeper.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 
-#include "cli/commands.h"
 #include "core/error.h"
+#include "core/version.h"
 
 namespace sphgeo {
 

@@ -1,4 +1,4 @@
-#include "cli/recorder.h"
+#include "run/recorder.h"
 
 #include <fmt/format.h>
 
@@ -7,12 +7,12 @@
 #include <chrono>
 #include <cmath>
 
-#include "cli/boundary_mesh.h"
-#include "cli/set_frame.h"
-#include "cli/wishes.h"
 #include "core/parallel.h"
 #include "probes/set_sums.h"
 #include "probes/solid_scene.h"
+#include "run/boundary_mesh.h"
+#include "run/set_frame.h"
+#include "run/wishes.h"
 #include "scene/build.h"
 #include "scene/world_view.h"
 
