@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "plan/fake_effects.h"
-#include "run/recorder.h"
+#include "run/wishes.h"
 #include "support/rig.h"
 
 using namespace sphgeo;
