@@ -97,6 +97,6 @@ std::optional<double> Inlet::expected_particles(double spacing, int dimension, d
 }
 
 namespace {
-const Register<BoundarySpec, Inlet> registered{"inlet"};
+const Register<BoundarySpec, Inlet> registered_inlet{"inlet"};
 }
 }  // namespace sphgeo

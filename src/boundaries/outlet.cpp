@@ -12,6 +12,6 @@ Schema<Outlet> Outlet::schema() {
 }
 
 namespace {
-const Register<BoundarySpec, Outlet> registered{"outlet"};
+const Register<BoundarySpec, Outlet> registered_outlet{"outlet"};
 }
 }  // namespace sphgeo

@@ -48,6 +48,6 @@ std::vector<Vec3> Reservoir::places(double spacing, int dimension) const {
 Aabb Reservoir::source_box() const { return shape->box(); }
 
 namespace {
-const Register<BoundarySpec, Reservoir> registered{"reservoir"};
+const Register<BoundarySpec, Reservoir> registered_reservoir{"reservoir"};
 }
 }  // namespace sphgeo

@@ -187,7 +187,7 @@ struct Tank final : WallBoundary {
   }
 };
 
-const Register<BoundarySpec, Tank> registered{"tank"};
+const Register<BoundarySpec, Tank> registered_tank{"tank"};
 
 }  // namespace
 }  // namespace sphgeo

@@ -28,7 +28,7 @@ struct Wall final : WallBoundary {
   std::shared_ptr<const Shape> solid(const Placement&) const override { return shape; }
 };
 
-const Register<BoundarySpec, Wall> registered{"wall"};
+const Register<BoundarySpec, Wall> registered_wall{"wall"};
 
 }  // namespace
 }  // namespace sphgeo

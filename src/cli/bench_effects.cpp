@@ -14,6 +14,7 @@
 #include "cli/commands.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "core/text.h"
 #include "core/version.h"
 #include "scene/build.h"
@@ -122,8 +123,6 @@ std::vector<Wish> all_wishes(const World<3>& world) {
   }
   return wishes;
 }
-
-double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 /// A built scene that can be stepped for a while.
 class Stand {

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "core/text.h"
 #include "core/version.h"
 #include "output/progress.h"
@@ -27,10 +28,6 @@ namespace sphgeo {
 namespace {
 
 using clock_type = std::chrono::steady_clock;
-
-double seconds_since(clock_type::time_point start) {
-  return std::chrono::duration<double>(clock_type::now() - start).count();
-}
 
 ProgressState progress_of(const Model& model, const Clock& c, Index particles, double wall) {
   return {c.time, model.end_time, c.advection_steps, c.acoustic_steps, c.dt_acoustic, particles,

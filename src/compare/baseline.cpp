@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr const char* kind = "sphgeo baseline 1";
+constexpr const char* baseline_kind = "sphgeo baseline 1";
 
 /// Seven digits: more would tell nothing, as fields are compared by tolerances far above.
 Json number(double value) {
@@ -31,7 +31,7 @@ Json list(const std::vector<double>& values) {
   return out;
 }
 
-std::vector<double> numbers(const Json& j) {
+std::vector<double> numbers_or_nan(const Json& j) {
   std::vector<double> out;
   for (const Json& x : j) out.push_back(x.is_null() ? std::nan("") : x.get<double>());
   return out;
@@ -112,8 +112,8 @@ RunData from_json(const Json& j) {
   for (const auto& [name, count] : j.at("steps").items())
     run.steps.emplace_back(name, count.get<double>());
   for (const auto& [name, row] : j.at("ledger").items())
-    run.ledger.emplace_back(name,
-                            LedgerState{numbers(row.at("initial")), numbers(row.at("final"))});
+    run.ledger.emplace_back(
+        name, LedgerState{numbers_or_nan(row.at("initial")), numbers_or_nan(row.at("final"))});
   for (const auto& [name, row] : j.at("expect").items()) {
     ResultState result;
     if (row.at("value").is_number()) result.value = row.at("value").get<double>();
@@ -122,13 +122,13 @@ RunData from_json(const Json& j) {
     run.results.emplace_back(name, result);
   }
   for (const Json& probe : j.at("probes")) {
-    const std::vector<double> t = numbers(probe.at("t"));
+    const std::vector<double> t = numbers_or_nan(probe.at("t"));
     if (!std::all_of(t.begin(), t.end(), [](double x) { return std::isfinite(x); }) ||
         !std::is_sorted(t.begin(), t.end()))
       throw std::runtime_error("the times of a probe do not rise");
     for (const auto& [column, row] : probe.at("columns").items()) {
       run.probes.push_back(
-          {probe.at("name"), column, row.at("unit"), t, numbers(row.at("values"))});
+          {probe.at("name"), column, row.at("unit"), t, numbers_or_nan(row.at("values"))});
       if (run.probes.back().y.size() != t.size())
         throw std::runtime_error("a probe's column has another length than its times");
     }
@@ -141,8 +141,8 @@ RunData from_json(const Json& j) {
     set.particles = row.at("particles").get<Index>();
     if (set.particles < 0 || set.particles > (Index{1} << 50))
       throw std::runtime_error("the number of particles is absurd");
-    const std::vector<double> x = numbers(row.at("x")), y = numbers(row.at("y")),
-                              z = numbers(row.at("z"));
+    const std::vector<double> x = numbers_or_nan(row.at("x")), y = numbers_or_nan(row.at("y")),
+                              z = numbers_or_nan(row.at("z"));
     if (x.size() != y.size() || x.size() != z.size())
       throw std::runtime_error("the places of a set differ in length");
     for (std::size_t k = 0; k < x.size(); ++k) {
@@ -151,7 +151,7 @@ RunData from_json(const Json& j) {
         throw std::runtime_error("the place of a particle is no number");
     }
     for (const auto& [name, values] : row.at("fields").items()) {
-      set.fields.push_back({name, numbers(values)});
+      set.fields.push_back({name, numbers_or_nan(values)});
       if (set.fields.back().values.size() != x.size())
         throw std::runtime_error("a field has another length than its set");
     }
@@ -164,7 +164,7 @@ RunData from_json(const Json& j) {
 
 void write_baseline(const std::string& path, const RunData& run, const BaselineSize& size) {
   Json j;
-  j["kind"] = kind;
+  j["kind"] = baseline_kind;
   j["title"] = run.title;
   j["version"] = run.version;
   const std::time_t now = std::time(nullptr);
@@ -198,7 +198,7 @@ void write_baseline(const std::string& path, const RunData& run, const BaselineS
 RunData read_baseline(const std::string& path) {
   const Json j = Json::parse(read_file(path), nullptr, false);
   const auto at = j.is_object() ? j.find("kind") : j.end();
-  if (!j.is_object() || at == j.end() || *at != kind)
+  if (!j.is_object() || at == j.end() || *at != baseline_kind)
     throw Error(ExitCode::usage, path +
                                      ": this is no baseline; expected a run folder, or a file that "
                                      "'sphgeo compare RUN FILE --update' has written");

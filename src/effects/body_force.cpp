@@ -38,7 +38,7 @@ class BodyForce final : public Effect<Dim> {
   Field<Vec<Dim>>* acceleration_ = nullptr;
 };
 
-const RegisterEffect<BodyForce> registered;
+const RegisterEffect<BodyForce> registered_body_force;
 
 }  // namespace
 }  // namespace sphgeo

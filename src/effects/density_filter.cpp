@@ -109,7 +109,7 @@ class DensityFilter final : public Effect<Dim> {
   ParticleSet<Dim>* water_ = nullptr;
 };
 
-const RegisterEffect<DensityFilter> registered;
+const RegisterEffect<DensityFilter> registered_density_filter;
 
 }  // namespace
 }  // namespace sphgeo

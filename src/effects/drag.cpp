@@ -155,7 +155,7 @@ class Drag final : public Effect<Dim> {
   ParticleSet<Dim>* soil_ = nullptr;
 };
 
-const RegisterEffect<Drag> registered;
+const RegisterEffect<Drag> registered_drag;
 
 }  // namespace
 }  // namespace sphgeo

@@ -31,7 +31,7 @@ class IdleClock final : public Effect<Dim> {
   }
 };
 
-const RegisterEffect<IdleClock> registered;
+const RegisterEffect<IdleClock> registered_idle_clock;
 
 }  // namespace
 }  // namespace sphgeo

@@ -76,7 +76,7 @@ class InletFlow final : public Effect<Dim> {
   ParticleSet<Dim>* water_ = nullptr;
 };
 
-const RegisterEffect<InletFlow> registered;
+const RegisterEffect<InletFlow> registered_inlet_flow;
 
 }  // namespace
 }  // namespace sphgeo

@@ -56,7 +56,7 @@ class OutletFlow final : public Effect<Dim> {
   Aabb box_;
 };
 
-const RegisterEffect<OutletFlow> registered;
+const RegisterEffect<OutletFlow> registered_outlet_flow;
 
 }  // namespace
 }  // namespace sphgeo

@@ -116,7 +116,7 @@ class PorePressure final : public Effect<Dim> {
   ParticleSet<Dim>* soil_ = nullptr;
 };
 
-const RegisterEffect<PorePressure> registered;
+const RegisterEffect<PorePressure> registered_pore_pressure;
 
 }  // namespace
 }  // namespace sphgeo

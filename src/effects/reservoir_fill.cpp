@@ -113,7 +113,7 @@ class ReservoirFill final : public Effect<Dim> {
   ParticleSet<Dim>* water_ = nullptr;
 };
 
-const RegisterEffect<ReservoirFill> registered;
+const RegisterEffect<ReservoirFill> registered_reservoir_fill;
 
 }  // namespace
 }  // namespace sphgeo

@@ -42,7 +42,7 @@ class RigidForces final : public Effect<Dim> {
   std::string set_;
 };
 
-const RegisterEffect<RigidForces> registered;
+const RegisterEffect<RigidForces> registered_rigid_forces;
 
 }  // namespace
 }  // namespace sphgeo

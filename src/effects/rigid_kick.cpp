@@ -105,7 +105,7 @@ class RigidKick final : public Effect<Dim> {
   double sound_ = 0;                      // of the stiffest contact, m/s
 };
 
-const RegisterEffect<RigidKick> registered;
+const RegisterEffect<RigidKick> registered_rigid_kick;
 
 }  // namespace
 }  // namespace sphgeo

@@ -41,7 +41,7 @@ class RigidPredict final : public Effect<Dim> {
   RigidBodies<Dim> bodies_;
 };
 
-const RegisterEffect<RigidPredict> registered;
+const RegisterEffect<RigidPredict> registered_rigid_predict;
 
 }  // namespace
 }  // namespace sphgeo

@@ -59,7 +59,7 @@ class SkinFollow final : public Effect<Dim> {
   SkinMap<Dim> map_;
 };
 
-const RegisterEffect<SkinFollow> registered;
+const RegisterEffect<SkinFollow> registered_skin_follow;
 
 }  // namespace
 }  // namespace sphgeo

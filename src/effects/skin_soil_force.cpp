@@ -44,7 +44,7 @@ class SkinSoilForce final : public Effect<Dim> {
   }
 };
 
-const RegisterEffect<SkinSoilForce> registered;
+const RegisterEffect<SkinSoilForce> registered_skin_soil_force;
 
 }  // namespace
 }  // namespace sphgeo

@@ -115,7 +115,7 @@ class SkinState final : public Effect<Dim> {
   SkinMap<Dim> map_;
 };
 
-const RegisterEffect<SkinState> registered;
+const RegisterEffect<SkinState> registered_skin_state;
 
 }  // namespace
 }  // namespace sphgeo

@@ -56,7 +56,7 @@ class SkinWaterForce final : public Effect<Dim> {
   }
 };
 
-const RegisterEffect<SkinWaterForce> registered;
+const RegisterEffect<SkinWaterForce> registered_skin_water_force;
 
 }  // namespace
 }  // namespace sphgeo

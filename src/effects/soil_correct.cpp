@@ -35,7 +35,7 @@ class SoilCorrect final : public Effect<Dim> {
   ParticleSet<Dim>* soil_ = nullptr;
 };
 
-const RegisterEffect<SoilCorrect> registered;
+const RegisterEffect<SoilCorrect> registered_soil_correct;
 
 }  // namespace
 }  // namespace sphgeo

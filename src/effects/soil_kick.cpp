@@ -103,7 +103,7 @@ class SoilKick final : public Effect<Dim> {
   ParticleSet<Dim>* soil_ = nullptr;
 };
 
-const RegisterEffect<SoilKick> registered;
+const RegisterEffect<SoilKick> registered_soil_kick;
 
 }  // namespace
 }  // namespace sphgeo

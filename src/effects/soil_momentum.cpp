@@ -106,7 +106,7 @@ class SoilMomentum final : public Effect<Dim> {
   ParticleSet<Dim>* soil_ = nullptr;
 };
 
-const RegisterEffect<SoilMomentum> registered;
+const RegisterEffect<SoilMomentum> registered_soil_momentum;
 
 }  // namespace
 }  // namespace sphgeo

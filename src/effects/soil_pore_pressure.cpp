@@ -68,7 +68,7 @@ class SoilPorePressure final : public Effect<Dim> {
   ParticleSet<Dim>* soil_ = nullptr;
 };
 
-const RegisterEffect<SoilPorePressure> registered;
+const RegisterEffect<SoilPorePressure> registered_soil_pore_pressure;
 
 }  // namespace
 }  // namespace sphgeo

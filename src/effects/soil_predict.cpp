@@ -71,7 +71,7 @@ class SoilPredict final : public Effect<Dim> {
   ParticleSet<Dim>* soil_ = nullptr;
 };
 
-const RegisterEffect<SoilPredict> registered;
+const RegisterEffect<SoilPredict> registered_soil_predict;
 
 }  // namespace
 }  // namespace sphgeo

@@ -195,7 +195,7 @@ class SoilReinitialization final : public Effect<Dim> {
   std::vector<Around> around_;
 };
 
-const RegisterEffect<SoilReinitialization> registered;
+const RegisterEffect<SoilReinitialization> registered_soil_reinitialization;
 
 }  // namespace
 }  // namespace sphgeo

@@ -94,7 +94,7 @@ class SoilSaturation final : public Effect<Dim> {
   ParticleSet<Dim>* soil_ = nullptr;
 };
 
-const RegisterEffect<SoilSaturation> registered;
+const RegisterEffect<SoilSaturation> registered_soil_saturation;
 
 }  // namespace
 }  // namespace sphgeo

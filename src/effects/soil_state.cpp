@@ -54,7 +54,7 @@ class SoilState final : public Effect<Dim> {
   ParticleSet<Dim>* soil_ = nullptr;
 };
 
-const RegisterEffect<SoilState> registered;
+const RegisterEffect<SoilState> registered_soil_state;
 
 }  // namespace
 }  // namespace sphgeo

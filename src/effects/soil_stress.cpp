@@ -248,7 +248,7 @@ class SoilStress final : public Effect<Dim> {
   ParticleSet<Dim>* soil_ = nullptr;
 };
 
-const RegisterEffect<SoilStress> registered;
+const RegisterEffect<SoilStress> registered_soil_stress;
 
 }  // namespace
 }  // namespace sphgeo

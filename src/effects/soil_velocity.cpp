@@ -75,7 +75,7 @@ class SoilVelocity final : public Effect<Dim> {
   ParticleSet<Dim>* soil_ = nullptr;
 };
 
-const RegisterEffect<SoilVelocity> registered;
+const RegisterEffect<SoilVelocity> registered_soil_velocity;
 
 }  // namespace
 }  // namespace sphgeo

@@ -70,7 +70,7 @@ class SoilWallForce final : public Effect<Dim> {
   ParticleSet<Dim>* soil_ = nullptr;
 };
 
-const RegisterEffect<SoilWallForce> registered;
+const RegisterEffect<SoilWallForce> registered_soil_wall_force;
 
 }  // namespace
 }  // namespace sphgeo

@@ -57,7 +57,7 @@ class SoilWallReaction final : public Effect<Dim> {
   ParticleSet<Dim>* soil_ = nullptr;
 };
 
-const RegisterEffect<SoilWallReaction> registered;
+const RegisterEffect<SoilWallReaction> registered_soil_wall_reaction;
 
 }  // namespace
 }  // namespace sphgeo

@@ -383,7 +383,7 @@ void SolidContact<Dim>::touch_walls(Index skin, double dt, Field<Vec<Dim>>& seen
   energy[skin] += stiffness * p.volume * excess * excess;
 }
 
-const RegisterEffect<SolidContact> registered;
+const RegisterEffect<SolidContact> registered_solid_contact;
 
 }  // namespace
 }  // namespace sphgeo

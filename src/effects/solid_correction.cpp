@@ -101,7 +101,7 @@ class SolidCorrection final : public Effect<Dim> {
   bool done_ = false;
 };
 
-const RegisterEffect<SolidCorrection> registered;
+const RegisterEffect<SolidCorrection> registered_solid_correction;
 
 }  // namespace
 }  // namespace sphgeo

@@ -113,7 +113,7 @@ class SolidKick final : public Effect<Dim> {
   double sound_ = 0, slowest_ = std::numeric_limits<double>::infinity();  // of its bodies, m/s
 };
 
-const RegisterEffect<SolidKick> registered;
+const RegisterEffect<SolidKick> registered_solid_kick;
 
 }  // namespace
 }  // namespace sphgeo

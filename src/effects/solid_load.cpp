@@ -83,7 +83,7 @@ class SolidLoad final : public Effect<Dim> {
   SkinMap<Dim> map_;
 };
 
-const RegisterEffect<SolidLoad> registered;
+const RegisterEffect<SolidLoad> registered_solid_load;
 
 }  // namespace
 }  // namespace sphgeo

@@ -134,7 +134,7 @@ class SolidMomentum final : public Effect<Dim> {
   bool viscous_ = false;
 };
 
-const RegisterEffect<SolidMomentum> registered;
+const RegisterEffect<SolidMomentum> registered_solid_momentum;
 
 }  // namespace
 }  // namespace sphgeo

@@ -108,7 +108,7 @@ class SolidPredict final : public Effect<Dim> {
   Deformation<Dim> deformation_;  // its frames hold for one acoustic step
 };
 
-const RegisterEffect<SolidPredict> registered;
+const RegisterEffect<SolidPredict> registered_solid_predict;
 
 }  // namespace
 }  // namespace sphgeo

@@ -84,7 +84,7 @@ class SolidState final : public Effect<Dim> {
   Deformation<Dim> deformation_;
 };
 
-const RegisterEffect<SolidState> registered;
+const RegisterEffect<SolidState> registered_solid_state;
 
 }  // namespace
 }  // namespace sphgeo

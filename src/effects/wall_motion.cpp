@@ -128,7 +128,7 @@ class WallMotion final : public Effect<Dim> {
   ParticleSet<Dim>* walls_ = nullptr;
 };
 
-const RegisterEffect<WallMotion> registered;
+const RegisterEffect<WallMotion> registered_wall_motion;
 
 }  // namespace
 }  // namespace sphgeo

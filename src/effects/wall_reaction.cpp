@@ -61,7 +61,7 @@ class WallReaction final : public Effect<Dim> {
   ParticleSet<Dim>* water_ = nullptr;
 };
 
-const RegisterEffect<WallReaction> registered;
+const RegisterEffect<WallReaction> registered_wall_reaction;
 
 }  // namespace
 }  // namespace sphgeo

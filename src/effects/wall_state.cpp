@@ -52,7 +52,7 @@ class WallState final : public Effect<Dim> {
   bool packed_ = false;
 };
 
-const RegisterEffect<WallState> registered;
+const RegisterEffect<WallState> registered_wall_state;
 
 }  // namespace
 }  // namespace sphgeo

@@ -110,7 +110,7 @@ class WaterContinuity final : public Effect<Dim> {
   Field<double>* rate_ = nullptr;
 };
 
-const RegisterEffect<WaterContinuity> registered;
+const RegisterEffect<WaterContinuity> registered_water_continuity;
 
 }  // namespace
 }  // namespace sphgeo

@@ -34,7 +34,7 @@ class WaterCorrect final : public Effect<Dim> {
   ParticleSet<Dim>* water_ = nullptr;
 };
 
-const RegisterEffect<WaterCorrect> registered;
+const RegisterEffect<WaterCorrect> registered_water_correct;
 
 }  // namespace
 }  // namespace sphgeo

@@ -267,7 +267,7 @@ class WaterFraction final : public Effect<Dim> {
   ParticleSet<Dim>* soil_ = nullptr;
 };
 
-const RegisterEffect<WaterFraction> registered;
+const RegisterEffect<WaterFraction> registered_water_fraction;
 
 }  // namespace
 }  // namespace sphgeo

@@ -97,7 +97,7 @@ class WaterKick final : public Effect<Dim> {
   long arrangement_ = -1;        // during which that kick was
 };
 
-const RegisterEffect<WaterKick> registered;
+const RegisterEffect<WaterKick> registered_water_kick;
 
 }  // namespace
 }  // namespace sphgeo

@@ -116,7 +116,7 @@ class WaterMomentum final : public Effect<Dim> {
   Field<Vec<Dim>>* acceleration_ = nullptr;
 };
 
-const RegisterEffect<WaterMomentum> registered;
+const RegisterEffect<WaterMomentum> registered_water_momentum;
 
 }  // namespace
 }  // namespace sphgeo

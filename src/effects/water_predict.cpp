@@ -92,7 +92,7 @@ class WaterPredict final : public Effect<Dim> {
   ParticleSet<Dim>* water_ = nullptr;
 };
 
-const RegisterEffect<WaterPredict> registered;
+const RegisterEffect<WaterPredict> registered_water_predict;
 
 }  // namespace
 }  // namespace sphgeo

@@ -59,7 +59,7 @@ class WaterPressure final : public Effect<Dim> {
   ParticleSet<Dim>* water_ = nullptr;
 };
 
-const RegisterEffect<WaterPressure> registered;
+const RegisterEffect<WaterPressure> registered_water_pressure;
 
 }  // namespace
 }  // namespace sphgeo

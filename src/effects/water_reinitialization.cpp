@@ -373,7 +373,7 @@ class WaterReinitialization final : public Effect<Dim> {
   double lattice_ = 1, moment_ = 1;
 };
 
-const RegisterEffect<WaterReinitialization> registered;
+const RegisterEffect<WaterReinitialization> registered_water_reinitialization;
 
 }  // namespace
 }  // namespace sphgeo

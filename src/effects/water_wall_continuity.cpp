@@ -76,7 +76,7 @@ class WaterWallContinuity final : public Effect<Dim> {
   ParticleSet<Dim>* water_ = nullptr;
 };
 
-const RegisterEffect<WaterWallContinuity> registered;
+const RegisterEffect<WaterWallContinuity> registered_water_wall_continuity;
 
 }  // namespace
 }  // namespace sphgeo

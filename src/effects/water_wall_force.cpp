@@ -116,7 +116,7 @@ class WaterWallForce final : public Effect<Dim> {
   ParticleSet<Dim>* water_ = nullptr;
 };
 
-const RegisterEffect<WaterWallForce> registered;
+const RegisterEffect<WaterWallForce> registered_water_wall_force;
 
 }  // namespace
 }  // namespace sphgeo

@@ -177,7 +177,7 @@ class WaveAbsorption final : public Effect<Dim> {
   ParticleSet<Dim>* water_ = nullptr;
 };
 
-const RegisterEffect<WaveAbsorption> registered;
+const RegisterEffect<WaveAbsorption> registered_wave_absorption;
 
 }  // namespace
 }  // namespace sphgeo

@@ -94,7 +94,7 @@ struct Boulder final : SceneShape {
   std::array<Wave, waves> waves_;
 };
 
-const Register<Shape, Boulder> registered{"boulder"};
+const Register<Shape, Boulder> registered_boulder{"boulder"};
 
 }  // namespace
 }  // namespace sphgeo

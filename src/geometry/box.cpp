@@ -4,7 +4,7 @@
 namespace sphgeo {
 
 namespace {
-const Register<Shape, Box> registered{"box"};
+const Register<Shape, Box> registered_box{"box"};
 }
 
 Schema<Box> Box::schema() {

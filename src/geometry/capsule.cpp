@@ -4,7 +4,7 @@
 namespace sphgeo {
 
 namespace {
-const Register<Shape, Capsule> registered{"capsule"};
+const Register<Shape, Capsule> registered_capsule{"capsule"};
 }
 
 Schema<Capsule> Capsule::schema() {

@@ -4,7 +4,7 @@
 namespace sphgeo {
 
 namespace {
-const Register<Shape, Complement> registered{"complement"};
+const Register<Shape, Complement> registered_complement{"complement"};
 }
 
 Schema<Complement> Complement::schema() {

@@ -4,7 +4,7 @@
 namespace sphgeo {
 
 namespace {
-const Register<Shape, Cone> registered{"cone"};
+const Register<Shape, Cone> registered_cone{"cone"};
 }
 
 Schema<Cone> Cone::schema() {

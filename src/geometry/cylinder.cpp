@@ -4,7 +4,7 @@
 namespace sphgeo {
 
 namespace {
-const Register<Shape, Cylinder> registered{"cylinder"};
+const Register<Shape, Cylinder> registered_cylinder{"cylinder"};
 }
 
 Schema<Cylinder> Cylinder::schema() {

@@ -4,7 +4,7 @@
 namespace sphgeo {
 
 namespace {
-const Register<Shape, Difference> registered{"difference"};
+const Register<Shape, Difference> registered_difference{"difference"};
 }
 
 Schema<Difference> Difference::schema() {

@@ -4,7 +4,7 @@
 namespace sphgeo {
 
 namespace {
-const Register<Shape, Ellipsoid> registered{"ellipsoid"};
+const Register<Shape, Ellipsoid> registered_ellipsoid{"ellipsoid"};
 }
 
 Schema<Ellipsoid> Ellipsoid::schema() {

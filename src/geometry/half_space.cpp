@@ -4,7 +4,7 @@
 namespace sphgeo {
 
 namespace {
-const Register<Shape, HalfSpace> registered{"half_space"};
+const Register<Shape, HalfSpace> registered_half_space{"half_space"};
 }
 
 Schema<HalfSpace> HalfSpace::schema() {

@@ -10,7 +10,7 @@
 namespace sphgeo {
 
 namespace {
-const Register<Shape, HeightField> registered{"height_field"};
+const Register<Shape, HeightField> registered_height_field{"height_field"};
 }
 
 Schema<HeightField> HeightField::schema() {

@@ -4,7 +4,7 @@
 namespace sphgeo {
 
 namespace {
-const Register<Shape, Intersection> registered{"intersection"};
+const Register<Shape, Intersection> registered_intersection{"intersection"};
 }
 
 Schema<Intersection> Intersection::schema() {

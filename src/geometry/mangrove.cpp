@@ -135,7 +135,7 @@ struct Mangrove final : SceneShape {
   std::vector<Piece> pieces_;
 };
 
-const Register<Shape, Mangrove> registered{"mangrove"};
+const Register<Shape, Mangrove> registered_mangrove{"mangrove"};
 
 }  // namespace
 }  // namespace sphgeo

@@ -6,7 +6,7 @@
 namespace sphgeo {
 
 namespace {
-const Register<Shape, Shell> registered{"shell"};
+const Register<Shape, Shell> registered_shell{"shell"};
 }
 
 Schema<Shell> Shell::schema() {

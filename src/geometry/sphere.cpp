@@ -4,7 +4,7 @@
 namespace sphgeo {
 
 namespace {
-const Register<Shape, Sphere> registered{"sphere"};
+const Register<Shape, Sphere> registered_sphere{"sphere"};
 }
 
 Schema<Sphere> Sphere::schema() {

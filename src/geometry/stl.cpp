@@ -12,7 +12,7 @@ namespace sphgeo {
 
 namespace {
 
-const Register<Shape, Stl> registered{"stl"};
+const Register<Shape, Stl> registered_stl{"stl"};
 
 Vec3 in_plane(const Vec2& p) { return {p.x(), 0.0, p.y()}; }
 

@@ -6,7 +6,7 @@
 namespace sphgeo {
 
 namespace {
-const Register<Shape, Transform> registered{"transform"};
+const Register<Shape, Transform> registered_transform{"transform"};
 }
 
 Schema<Transform> Transform::schema() {

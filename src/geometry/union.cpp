@@ -4,7 +4,7 @@
 namespace sphgeo {
 
 namespace {
-const Register<Shape, Union> registered{"union"};
+const Register<Shape, Union> registered_union{"union"};
 }
 
 Schema<Union> Union::schema() {

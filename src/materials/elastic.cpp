@@ -26,6 +26,6 @@ Schema<Elastic> Elastic::schema() {
   return s;
 }
 
-static const Register<MaterialSpec, Elastic> registered{"elastic"};
+static const Register<MaterialSpec, Elastic> registered_elastic{"elastic"};
 
 }  // namespace sphgeo

@@ -16,6 +16,6 @@ Schema<Rigid> Rigid::schema() {
   return s;
 }
 
-static const Register<MaterialSpec, Rigid> registered{"rigid"};
+static const Register<MaterialSpec, Rigid> registered_rigid{"rigid"};
 
 }  // namespace sphgeo

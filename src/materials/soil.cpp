@@ -142,6 +142,6 @@ double Soil::pressure_at_rest() const {
   return 1 - std::sin(std::atan(tan_friction()));
 }
 
-static const Register<MaterialSpec, Soil> registered{"soil"};
+static const Register<MaterialSpec, Soil> registered_soil{"soil"};
 
 }  // namespace sphgeo

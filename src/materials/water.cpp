@@ -21,6 +21,6 @@ Schema<Water> Water::schema() {
   return s;
 }
 
-static const Register<MaterialSpec, Water> registered{"water"};
+static const Register<MaterialSpec, Water> registered_water{"water"};
 
 }  // namespace sphgeo

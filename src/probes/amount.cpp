@@ -51,7 +51,7 @@ struct AmountProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, AmountProbe> registered{"amount"};
+const Register<ProbeSpec, AmountProbe> registered_amount{"amount"};
 
 }  // namespace
 }  // namespace sphgeo

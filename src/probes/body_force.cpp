@@ -87,7 +87,7 @@ struct BodyForceProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, BodyForceProbe> registered{"body_force"};
+const Register<ProbeSpec, BodyForceProbe> registered_body_force{"body_force"};
 
 }  // namespace
 }  // namespace sphgeo

@@ -108,7 +108,7 @@ struct DepositProbe final : Probe {
   static constexpr double bin_width = 1.5;
 };
 
-const Register<ProbeSpec, DepositProbe> registered{"deposit"};
+const Register<ProbeSpec, DepositProbe> registered_deposit{"deposit"};
 
 }  // namespace
 }  // namespace sphgeo

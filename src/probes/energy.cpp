@@ -79,7 +79,7 @@ struct EnergyProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, EnergyProbe> registered{"energy"};
+const Register<ProbeSpec, EnergyProbe> registered_energy{"energy"};
 
 }  // namespace
 }  // namespace sphgeo

@@ -45,7 +45,7 @@ struct ExchangeProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, ExchangeProbe> registered{"exchange"};
+const Register<ProbeSpec, ExchangeProbe> registered_exchange{"exchange"};
 
 }  // namespace
 }  // namespace sphgeo

@@ -61,7 +61,7 @@ struct FluxProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, FluxProbe> registered{"flux"};
+const Register<ProbeSpec, FluxProbe> registered_flux{"flux"};
 
 }  // namespace
 }  // namespace sphgeo

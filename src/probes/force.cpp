@@ -39,7 +39,7 @@ struct ForceProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, ForceProbe> registered{"force"};
+const Register<ProbeSpec, ForceProbe> registered_force{"force"};
 
 }  // namespace
 }  // namespace sphgeo

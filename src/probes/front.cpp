@@ -57,7 +57,7 @@ struct FrontProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, FrontProbe> registered{"front"};
+const Register<ProbeSpec, FrontProbe> registered_front{"front"};
 
 }  // namespace
 }  // namespace sphgeo

@@ -74,7 +74,7 @@ struct MaterialPointProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, MaterialPointProbe> registered{"material_point"};
+const Register<ProbeSpec, MaterialPointProbe> registered_material_point{"material_point"};
 
 }  // namespace
 }  // namespace sphgeo

@@ -78,7 +78,7 @@ struct MeanProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, MeanProbe> registered{"mean"};
+const Register<ProbeSpec, MeanProbe> registered_mean{"mean"};
 
 }  // namespace
 }  // namespace sphgeo

@@ -60,7 +60,7 @@ struct MomentsProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, MomentsProbe> registered{"moments"};
+const Register<ProbeSpec, MomentsProbe> registered_moments{"moments"};
 
 }  // namespace
 }  // namespace sphgeo

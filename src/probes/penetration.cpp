@@ -119,7 +119,7 @@ struct PenetrationProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, PenetrationProbe> registered{"penetration"};
+const Register<ProbeSpec, PenetrationProbe> registered_penetration{"penetration"};
 
 }  // namespace
 }  // namespace sphgeo

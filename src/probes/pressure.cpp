@@ -30,7 +30,7 @@ struct PressureProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, PressureProbe> registered{"pressure"};
+const Register<ProbeSpec, PressureProbe> registered_pressure{"pressure"};
 
 }  // namespace
 }  // namespace sphgeo

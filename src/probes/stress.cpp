@@ -57,7 +57,7 @@ struct StressProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, StressProbe> registered{"stress"};
+const Register<ProbeSpec, StressProbe> registered_stress{"stress"};
 
 }  // namespace
 }  // namespace sphgeo

@@ -119,7 +119,7 @@ struct StressPathProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, StressPathProbe> registered{"stress_path"};
+const Register<ProbeSpec, StressPathProbe> registered_stress_path{"stress_path"};
 
 }  // namespace
 }  // namespace sphgeo

@@ -71,7 +71,7 @@ struct SurfaceProfileProbe final : Probe {
   Vec3 place(int k) const { return from + (to - from) * k / (points - 1); }
 };
 
-const Register<ProbeSpec, SurfaceProfileProbe> registered{"surface_profile"};
+const Register<ProbeSpec, SurfaceProfileProbe> registered_surface_profile{"surface_profile"};
 
 }  // namespace
 }  // namespace sphgeo

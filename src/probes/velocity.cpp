@@ -30,7 +30,7 @@ struct VelocityProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, VelocityProbe> registered{"velocity"};
+const Register<ProbeSpec, VelocityProbe> registered_velocity{"velocity"};
 
 }  // namespace
 }  // namespace sphgeo

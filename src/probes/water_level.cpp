@@ -35,7 +35,7 @@ struct WaterLevelProbe final : Probe {
   }
 };
 
-const Register<ProbeSpec, WaterLevelProbe> registered{"water_level"};
+const Register<ProbeSpec, WaterLevelProbe> registered_water_level{"water_level"};
 
 }  // namespace
 }  // namespace sphgeo

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "run/recorder.h"
 #include "run/run_output.h"
 #include "run/thread_count.h"
@@ -18,10 +19,6 @@ namespace sphgeo {
 namespace {
 
 using clock_type = std::chrono::steady_clock;
-
-double seconds_since(clock_type::time_point start) {
-  return std::chrono::duration<double>(clock_type::now() - start).count();
-}
 
 // No set may be larger: offsets of records are 32-bit numbers.
 constexpr double largest_set = (1 << 29) - 2;

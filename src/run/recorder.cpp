@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "probes/set_sums.h"
 #include "probes/solid_scene.h"
 #include "run/boundary_mesh.h"
@@ -18,10 +19,6 @@
 
 namespace sphgeo {
 namespace {
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
 
 // How far a CSV file had come at a checkpoint.
 std::uint64_t bytes_at(const StateSource& source, const std::string& series) {
