@@ -27,7 +27,9 @@ constexpr NamedColor colors[] = {
     {"blue", {0.36, 0.62, 0.86, 1}},   {"ochre", {0.80, 0.64, 0.36, 1}},
     {"violet", {0.55, 0.42, 0.72, 1}}, {"green", {0.40, 0.66, 0.45, 1}},
     {"pink", {0.86, 0.52, 0.66, 1}},   {"brown", {0.55, 0.42, 0.34, 1}}};
+namespace color_number {
 constexpr int wall = 0, probe = 1, water = 2, soil = 3, solid = 4, solids = 4;
+}
 
 constexpr int most_width = 1400, most_height = 1000;  // pixels
 /// How far around the particles the picture shows walls and probes, by the size of what they fill.
@@ -78,7 +80,7 @@ std::string write_preview(const World<Dim>& world, const std::string& path) {
   const auto draw_walls = [&] {
     for (const auto& [a, b] : outline(walls.points, Dim, walls.corners))
       painter.line(walls.points[static_cast<std::size_t>(a)],
-                   walls.points[static_cast<std::size_t>(b)], 2, wall);
+                   walls.points[static_cast<std::size_t>(b)], 2, color_number::wall);
   };
   if (Dim == 3) draw_walls();
   for (const std::string_view kind :
@@ -86,23 +88,25 @@ std::string write_preview(const World<Dim>& world, const std::string& path) {
     for (const auto& set : world.sets()) {
       const std::vector<Vec3>& at = places[set->name()];
       if (set->phase() != kind || at.empty()) continue;
-      const int color = kind == "water" ? water : kind == "soil" ? soil : solid;
+      const int color = kind == "water"  ? color_number::water
+                        : kind == "soil" ? color_number::soil
+                                         : color_number::solid;
       std::vector<std::uint8_t> tints(at.size(), static_cast<std::uint8_t>(color));
-      if (color == solid && set->has(fields::part)) {
+      if (color == color_number::solid && set->has(fields::part)) {
         const auto& part = set->tag(fields::part);
         for (std::size_t i = 0; i < at.size(); ++i)
-          tints[i] =
-              static_cast<std::uint8_t>(solid + std::abs(part[static_cast<Index>(i)]) % solids);
+          tints[i] = static_cast<std::uint8_t>(
+              color_number::solid + std::abs(part[static_cast<Index>(i)]) % color_number::solids);
       }
       const double spacing = at.size() > 1 ? typical_spacing(at) : model.resolution;
       painter.discs(at, disc_cover(view, spacing) * spacing, tints,
-                    color == water ? 0 : 0.3 * spacing);
+                    color == color_number::water ? 0 : 0.3 * spacing);
       name(set->name(), tints.front());
     }
   if (Dim == 2) draw_walls();
-  for (const Vec3& at : probes) painter.mark(at, 7, probe);
-  if (!walls.part.empty()) name("boundaries", wall);
-  if (!probes.empty()) name("probes", probe);
+  for (const Vec3& at : probes) painter.mark(at, 7, color_number::probe);
+  if (!walls.part.empty()) name("boundaries", color_number::wall);
+  if (!probes.empty()) name("probes", color_number::probe);
   Picture picture = painter.picture();
   picture.palette.front() = {1, 1, 1, 1};  // seen on any screen
   write_file_atomically(path, png(picture));

@@ -2,7 +2,7 @@
 // Self-registration: one file per shape, material, boundary or probe, and nothing else touched.
 //
 //   struct Box final : Shape { Vec3 min, max; static Schema<Box> schema(); ... };
-//   static const Register<Shape, Box> registered{"box"};            // in box.cpp
+//   static const Register<Shape, Box> registered_box{"box"};           // in box.cpp
 //
 // The `type:` key of a mapping in the deck selects the class. The interface I has a public
 // `std::string type` that the reader sets to that name, and may declare keys that all its types

@@ -164,7 +164,7 @@ class EffectRegistry {
   static std::vector<Entry>& entries();
 };
 
-/// Self-registration: `static const RegisterEffect<MyEffect> registered;` at the end of the
+/// Self-registration: `const RegisterEffect<MyEffect> registered_my_effect;` at the end of the
 /// effect's file. MyEffect needs `static EffectInfo info()` and `static Binding<Dim> bind(const
 /// World<Dim>&)`.
 template <template <int> class E>

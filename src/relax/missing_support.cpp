@@ -7,13 +7,13 @@ namespace sphgeo {
 
 namespace {
 // Between smoothing lengths a factor of 1.2 apart a straight line is within 0.5 % of the sums.
-constexpr double step = 1.2;
+constexpr double h_ratio = 1.2;
 }  // namespace
 
 MissingSupport::MissingSupport(const Shape& water, const Aabb& around, double h_low, double h_high,
                                int dim) {
   const int intervals =
-      static_cast<int>(std::ceil(std::log(h_high / h_low) / std::log(step) - 1e-9));
+      static_cast<int>(std::ceil(std::log(h_high / h_low) / std::log(h_ratio) - 1e-9));
   for (int k = 0; k <= intervals; ++k) {
     h_.push_back(intervals == 0
                      ? h_low

@@ -36,7 +36,7 @@ std::string cell(const std::optional<double>& value) {
   return value ? fmt::format("{:.6g}", *value) : "-";
 }
 
-std::string wall_text(double seconds) {
+std::string seconds_text(double seconds) {
   return seconds < 10 ? fmt::format("{:.2f} s", seconds) : duration_text(seconds);
 }
 
@@ -153,8 +153,8 @@ std::string render_study(const Study& study, const std::vector<StudyResult>& res
           "  {:>14}  {:>9.4g}  {:>11}  {:>10}  {:>5}  {:>11}  {:>11}  {:>10}  {:>9}  {:>9}{}\n",
           shortened(printable(setting_of(run, r.curve->key)), 14), run.spacing,
           cell(r.values[k].value), error_cell(r.errors[k], claim.relative),
-          r.values[k].pass ? "pass" : "FAIL", wall_text(record.wall_s),
-          record.forecast_wall_s ? wall_text(*record.forecast_wall_s) : "-", record.particles,
+          r.values[k].pass ? "pass" : "FAIL", seconds_text(record.wall_s),
+          record.forecast_wall_s ? seconds_text(*record.forecast_wall_s) : "-", record.particles,
           record.acoustic_steps, bytes_text(record.memory_bytes), r.worth[k] ? "  *" : "");
     }
     if (r.by_spacing) out += "  " + convergence_text(r.convergence) + "\n";

@@ -89,7 +89,7 @@ def main():
     parser.add_argument("--short", type=int)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--threads", type=int, default=1)
-    args = parser.parse_args()
+    args = parser.parse_intermixed_args()
     many = 1 if args.record or args.against else 2
     programs = [str(Path(p).resolve()) for p in args.programs[:many]]
     chosen = list(cases(args.programs[many:]))
