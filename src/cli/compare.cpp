@@ -30,9 +30,9 @@ int compare_command(const CompareOptions& options) {
   const RunData baseline = read_either(options.baseline);
   const Tolerances tolerances =
       options.tolerances.empty() ? Tolerances{} : read_tolerances(options.tolerances);
-  const std::vector<Difference> differences = compare_runs(run, baseline, tolerances);
+  const std::vector<RunDifference> differences = compare_runs(run, baseline, tolerances);
   const auto failed = std::count_if(differences.begin(), differences.end(),
-                                    [](const Difference& d) { return !d.pass; });
+                                    [](const RunDifference& d) { return !d.pass; });
   if (options.json) {
     const nlohmann::ordered_json out = {{"run", options.run},
                                         {"baseline", options.baseline},

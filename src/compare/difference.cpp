@@ -69,7 +69,7 @@ class Comparison {
   Comparison(const RunData& run, const RunData& base, const Tolerances& tolerances)
       : run_(run), base_(base), tolerances_(tolerances) {}
 
-  std::vector<Difference> operator()() {
+  std::vector<RunDifference> operator()() {
     const bool same = run_.status == base_.status;
     found_.push_back({"status", "", same ? 0 : infinite, 0, same,
                       same ? "" : run_.status + ", was " + base_.status});
@@ -78,15 +78,15 @@ class Comparison {
     compare_sets();
     compare_ledger();
     compare_results();
-    std::stable_sort(found_.begin(), found_.end(), [](const Difference& a, const Difference& b) {
-      return severity(a) > severity(b);
-    });
+    std::stable_sort(
+        found_.begin(), found_.end(),
+        [](const RunDifference& a, const RunDifference& b) { return severity(a) > severity(b); });
     return std::move(found_);
   }
 
  private:
   /// Above 1: fails.
-  static double severity(const Difference& d) {
+  static double severity(const RunDifference& d) {
     if (d.kind == "new") return -1;
     if (std::isinf(d.tolerance)) return 0;
     if (d.tolerance == 0) return d.difference == 0 ? 0 : infinite;
@@ -242,7 +242,7 @@ class Comparison {
 
   const RunData &run_, &base_;
   const Tolerances& tolerances_;
-  std::vector<Difference> found_;
+  std::vector<RunDifference> found_;
 };
 
 /// The value of the curve at a time, NaN outside of it and beside gaps. `from` moves along with the
@@ -299,20 +299,20 @@ std::vector<std::size_t> nearest_places(const std::vector<Vec3>& places,
   return nearest;
 }
 
-std::vector<Difference> compare_runs(const RunData& run, const RunData& baseline,
-                                     const Tolerances& tolerances) {
+std::vector<RunDifference> compare_runs(const RunData& run, const RunData& baseline,
+                                        const Tolerances& tolerances) {
   return Comparison(run, baseline, tolerances)();
 }
 
-std::string render_differences(const std::vector<Difference>& differences, std::size_t shown) {
+std::string render_differences(const std::vector<RunDifference>& differences, std::size_t shown) {
   std::size_t width = 4;
   std::size_t passed = 0;
-  const auto listed = [&](const Difference& d) { return !d.pass || passed < shown; };
-  for (const Difference& d : differences)
+  const auto listed = [&](const RunDifference& d) { return !d.pass || passed < shown; };
+  for (const RunDifference& d : differences)
     width = std::max(width, std::min<std::size_t>(40, d.whole_name().size()));
   std::string out =
       fmt::format("  {:<{}}  {:>10}  {:>10}\n", "what", width, "difference", "tolerance");
-  for (const Difference& d : differences) {
+  for (const RunDifference& d : differences) {
     if (!listed(d)) continue;
     if (d.pass) ++passed;
     out += fmt::format("  {:<{}}  {:>10}  {:>10}  {}{}\n", printable(d.whole_name()), width,
@@ -323,12 +323,12 @@ std::string render_differences(const std::vector<Difference>& differences, std::
   return out;
 }
 
-nlohmann::ordered_json to_json(const std::vector<Difference>& differences) {
+nlohmann::ordered_json to_json(const std::vector<RunDifference>& differences) {
   auto out = nlohmann::ordered_json::array();
   const auto number = [](double v) {
     return std::isfinite(v) ? nlohmann::ordered_json(v) : nlohmann::ordered_json(nullptr);
   };
-  for (const Difference& d : differences)
+  for (const RunDifference& d : differences)
     out.push_back({{"kind", d.kind},
                    {"name", d.name},
                    {"difference", number(d.difference)},

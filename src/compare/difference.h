@@ -11,7 +11,7 @@
 namespace sphgeo {
 
 /// One thing that was compared.
-struct Difference {
+struct RunDifference {
   std::string
       kind;  ///< status, particles, steps, probe, places, field, ledger, result, missing, new
   std::string name;  ///< "gauge.level"
@@ -28,8 +28,8 @@ struct Difference {
 /// range is below a hundredth of that of its companions (the other components; the columns of the
 /// same unit) is measured by that hundredth: it is noise about zero. The list has the worst first,
 /// by difference over tolerance. What only the run has is told (kind `new`) and passes.
-std::vector<Difference> compare_runs(const RunData& run, const RunData& baseline,
-                                     const Tolerances& tolerances);
+std::vector<RunDifference> compare_runs(const RunData& run, const RunData& baseline,
+                                        const Tolerances& tolerances);
 
 /// How far a curve is from the baseline's at the baseline's times.
 struct CurveDistance {
@@ -44,7 +44,7 @@ std::vector<std::size_t> nearest_places(const std::vector<Vec3>& places,
                                         const std::vector<Vec3>& among);
 
 /// As a table, the worst first: all that fail and, of the others, the `shown` nearest to failing.
-std::string render_differences(const std::vector<Difference>& differences, std::size_t shown);
-nlohmann::ordered_json to_json(const std::vector<Difference>& differences);
+std::string render_differences(const std::vector<RunDifference>& differences, std::size_t shown);
+nlohmann::ordered_json to_json(const std::vector<RunDifference>& differences);
 
 }  // namespace sphgeo

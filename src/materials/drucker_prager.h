@@ -27,20 +27,20 @@ inline constexpr double unbounded = 1e150;
 
 /// The edge of Mohr and Coulomb's pyramid on which the cone lies. Eq. 14 is that of plane strain;
 /// in triaxial compression its soil of 30 degrees holds as much as one of 21.
-enum class Cone { plane_strain, compression, extension };
+enum class ConeFit { plane_strain, compression, extension };
 
 /// alpha_phi or alpha_psi of an angle whose tangent is given (Eq. 14 in plane strain).
-inline double slope(double tangent, Cone cone = Cone::plane_strain) {
-  if (cone == Cone::plane_strain) return tangent / std::sqrt(9 + 12 * tangent * tangent);
+inline double slope(double tangent, ConeFit cone = ConeFit::plane_strain) {
+  if (cone == ConeFit::plane_strain) return tangent / std::sqrt(9 + 12 * tangent * tangent);
   const double sine = tangent / std::sqrt(1 + tangent * tangent);
-  return 2 * sine / (std::sqrt(3.0) * (cone == Cone::compression ? 3 - sine : 3 + sine));
+  return 2 * sine / (std::sqrt(3.0) * (cone == ConeFit::compression ? 3 - sine : 3 + sine));
 }
 /// k_c of a cohesion [Pa] (Eq. 14 in plane strain).
-inline double strength(double cohesion, double tangent, Cone cone = Cone::plane_strain) {
-  if (cone == Cone::plane_strain) return 3 * cohesion / std::sqrt(9 + 12 * tangent * tangent);
+inline double strength(double cohesion, double tangent, ConeFit cone = ConeFit::plane_strain) {
+  if (cone == ConeFit::plane_strain) return 3 * cohesion / std::sqrt(9 + 12 * tangent * tangent);
   const double cosine = 1 / std::sqrt(1 + tangent * tangent), sine = tangent * cosine;
   return 6 * cohesion * cosine /
-         (std::sqrt(3.0) * (cone == Cone::compression ? 3 - sine : 3 + sine));
+         (std::sqrt(3.0) * (cone == ConeFit::compression ? 3 - sine : 3 + sine));
 }
 
 }  // namespace drucker_prager

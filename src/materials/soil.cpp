@@ -127,10 +127,10 @@ DruckerPrager<double> Soil::constants(double saturation) const {
   DruckerPrager<double> m{bulk_modulus(), shear_modulus(), 0, 0, 0, 0};
   if (elastic()) return with_strength(m, drucker_prager::unbounded);
   const double dry = cohesion, wet = saturated_cohesion.value_or(cohesion);
-  using drucker_prager::Cone;
-  const Cone edge = cone == "compression" ? Cone::compression
-                    : cone == "extension" ? Cone::extension
-                                          : Cone::plane_strain;
+  using drucker_prager::ConeFit;
+  const ConeFit edge = cone == "compression" ? ConeFit::compression
+                       : cone == "extension" ? ConeFit::extension
+                                             : ConeFit::plane_strain;
   m.friction = drucker_prager::slope(tan_friction(), edge);
   m.dilation = drucker_prager::slope(std::tan(dilation_angle), edge);
   return with_strength(

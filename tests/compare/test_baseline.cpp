@@ -57,7 +57,7 @@ TEST_CASE("a baseline is small and the run that it was made of equals it") {
   CHECK(std::isnan(base.probes[0].y.back()));
   CHECK(base.sets[0].particles == 1000);
   CHECK(base.sets[0].places.size() == 80);
-  for (const Difference& d : compare_runs(long_run(), base, {})) {
+  for (const RunDifference& d : compare_runs(long_run(), base, {})) {
     CAPTURE(d.whole_name());
     CHECK(d.pass);
     CHECK(d.difference < 1e-5);
@@ -70,7 +70,7 @@ TEST_CASE("a run equals its baseline also where values come and go from row to r
   for (std::size_t k = 0; k < run.probes[1].y.size(); ++k)
     if (k % 2 == 0) run.probes[1].y[k] = std::nan("");
   write_baseline(folder / "base.json", run, {100, 80});
-  for (const Difference& d : compare_runs(run, read_baseline(folder / "base.json"), {})) {
+  for (const RunDifference& d : compare_runs(run, read_baseline(folder / "base.json"), {})) {
     CAPTURE(d.whole_name());
     CHECK(d.difference < 1e-5);
   }

@@ -35,15 +35,15 @@ RunData some_run() {
   return run;
 }
 
-const Difference& find(const std::vector<Difference>& all, const std::string& name) {
+const RunDifference& find(const std::vector<RunDifference>& all, const std::string& name) {
   const auto at = std::find_if(all.begin(), all.end(),
-                               [&](const Difference& d) { return d.whole_name() == name; });
+                               [&](const RunDifference& d) { return d.whole_name() == name; });
   REQUIRE(at != all.end());
   return *at;
 }
 
-bool all_pass(const std::vector<Difference>& all) {
-  return std::all_of(all.begin(), all.end(), [](const Difference& d) { return d.pass; });
+bool all_pass(const std::vector<RunDifference>& all) {
+  return std::all_of(all.begin(), all.end(), [](const RunDifference& d) { return d.pass; });
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ TEST_CASE("a curve's difference is its root mean square by its range") {
   RunData run = some_run();
   for (double& y : run.probes[0].y) y += 0.1;
   const auto all = compare_runs(run, some_run(), {});
-  const Difference& d = find(all, "probe gauge.level");
+  const RunDifference& d = find(all, "probe gauge.level");
   // The curve spans from its trough at t = 1, 1 + sin 10, to 2.
   CHECK(d.difference ==
         doctest::Approx(0.1 / (1 - std::sin(3 * std::acos(-1.0) / 2))).epsilon(0.001));

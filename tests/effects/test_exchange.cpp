@@ -19,7 +19,7 @@ std::string scene(const std::string& rest, int dimension = 2) {
          "water, type: water, sound_speed: 20}]\n" +
          rest;
 }
-const std::string block =
+const std::string water_block =
     "bodies: [{name: block, material: water, shape: {type: box, min: [0, 0, 0], max: [0.5, 0.2, "
     "0.3]}}]\n";
 
@@ -74,15 +74,17 @@ TEST_SUITE("effects") {
 
   TEST_CASE(
       "an outlet takes out what comes into it, of the sets that it names, and keeps the book") {
-    Rig<2> rig(scene(block + "boundaries: [{name: drain, type: outlet, shape: {type: box, min: "
-                             "[0.25, -1, -1], max: [2, 1, 1]}}]\n"));
+    Rig<2> rig(scene(water_block +
+                     "boundaries: [{name: drain, type: outlet, shape: {type: box, min: "
+                     "[0.25, -1, -1], max: [2, 1, 1]}}]\n"));
     run(rig, 0);
     CHECK(rig.water().size() == 30);
     const auto& book = rig.world.exchanged("drain");
     CHECK(book.left == 30);
     CHECK(book.mass == doctest::Approx(-30 * 2.5));
-    Rig<2> other(scene(block + "boundaries: [{name: drain, type: outlet, sets: [soil], shape: "
-                               "{type: box, min: [0.25, -1, -1], max: [2, 1, 1]}}]\n"));
+    Rig<2> other(scene(water_block +
+                       "boundaries: [{name: drain, type: outlet, sets: [soil], shape: "
+                       "{type: box, min: [0.25, -1, -1], max: [2, 1, 1]}}]\n"));
     run(other, 0);
     CHECK(other.water().size() == 60);
   }
@@ -91,12 +93,12 @@ TEST_SUITE("effects") {
       "a reservoir adds nothing to water that stands at its level, and a layer where it stands "
       "lower") {
     const std::string shape = "shape: {type: box, min: [0, 0, 0], max: [0.5, 0.2, 0.5]}";
-    Rig<2> full(
-        scene(block + "boundaries: [{name: lake, type: reservoir, " + shape + ", level: 0.3}]\n"));
+    Rig<2> full(scene(water_block + "boundaries: [{name: lake, type: reservoir, " + shape +
+                      ", level: 0.3}]\n"));
     run(full, 0);
     CHECK(full.water().size() == 60);
-    Rig<2> low(
-        scene(block + "boundaries: [{name: lake, type: reservoir, " + shape + ", level: 0.35}]\n"));
+    Rig<2> low(scene(water_block + "boundaries: [{name: lake, type: reservoir, " + shape +
+                     ", level: 0.35}]\n"));
     run(low, 0);
     CHECK(low.water().size() == 70);
     CHECK(low.world.exchanged("lake").entered == 10);

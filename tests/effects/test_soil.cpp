@@ -12,13 +12,13 @@ using test::Rig;
 
 namespace {
 
-double random(Index i, int k) {
+double random_of_soil(Index i, int k) {
   return 2 * random_uniform(23, static_cast<std::uint64_t>(16 * i + k)) - 1;
 }
 
 // A free block of soil; `more` goes to the end of the deck.
-std::string block(int dimension, const std::string& material, const std::string& more = "",
-                  const std::string& body = "") {
+std::string soil_block(int dimension, const std::string& material, const std::string& more = "",
+                       const std::string& body = "") {
   return fmt::format(R"(
 dimension: {}
 resolution: 0.1
@@ -35,7 +35,7 @@ bodies:
                      dimension, material, body, more);
 }
 
-const char* const exact =
+const char* const exact_soil =
     "numerics: {pair_precision: double, volume_fraction_reinitialization: none}";
 
 // A velocity that is linear in space, with all components of its gradient.
@@ -51,9 +51,10 @@ template <int Dim>
 void disturb(Rig<Dim>& rig, bool stress, double by = 0.2) {
   rig.jitter_set("soil", by);
   for (Index i = 0; i < rig.soil().size(); ++i) {
-    for (int k = 0; k < Dim; ++k) rig.soil().vector(fields::velocity)[i][k] = random(i, k);
+    for (int k = 0; k < Dim; ++k) rig.soil().vector(fields::velocity)[i][k] = random_of_soil(i, k);
     if (!stress) continue;
-    for (int k = 0; k < 6; ++k) rig.soil().tensor(fields::stress)[i][k] = 1e4 * random(i, 4 + k);
+    for (int k = 0; k < 6; ++k)
+      rig.soil().tensor(fields::stress)[i][k] = 1e4 * random_of_soil(i, 4 + k);
     if (Dim == 2)
       rig.soil().tensor(fields::stress)[i][3] = rig.soil().tensor(fields::stress)[i][4] = 0;
   }
@@ -61,7 +62,7 @@ void disturb(Rig<Dim>& rig, bool stress, double by = 0.2) {
 
 template <int Dim>
 void check_momentum(const std::string& numerics, double tolerance) {
-  Rig<Dim> rig(block(Dim, "friction_angle: 30 deg", numerics));
+  Rig<Dim> rig(soil_block(Dim, "friction_angle: 30 deg", numerics));
   disturb(rig, true);
   rig.plan_it();
   rig.world.clock.dt_acoustic = 0;
@@ -81,7 +82,7 @@ void check_momentum(const std::string& numerics, double tolerance) {
 
 template <int Dim>
 void check_gradient() {
-  Rig<Dim> rig(block(Dim, "plasticity: none", exact));
+  Rig<Dim> rig(soil_block(Dim, "plasticity: none", exact_soil));
   rig.jitter_set("soil", 0.1);
   const Eigen::Matrix<double, Dim, Dim> g = slope<Dim>();
   for (Index i = 0; i < rig.soil().size(); ++i)
@@ -121,10 +122,10 @@ double elastic_energy(const Sym3& s, double young, double nu) {
 // they may be.
 template <int Dim>
 void check_power(const std::string& more) {
-  Rig<Dim> rig(block(Dim, "plasticity: none",
-                     "numerics: {pair_precision: double, limiter_soil: 0, "
-                     "volume_fraction_reinitialization: none}" +
-                         more));
+  Rig<Dim> rig(soil_block(Dim, "plasticity: none",
+                          "numerics: {pair_precision: double, limiter_soil: 0, "
+                          "volume_fraction_reinitialization: none}" +
+                              more));
   disturb(rig, true, 0.1);  // no nearer to walls than contact begins
   rig.plan_it();
   rig.world.clock.dt_acoustic = 0;
@@ -155,13 +156,13 @@ void check_power(const std::string& more) {
 // A block in a tank that it fills: force on the soil by walls and force on the walls.
 template <int Dim>
 void check_reaction(const std::string& slip) {
-  Rig<Dim> rig(block(Dim, "friction_angle: 30 deg",
-                     fmt::format(R"(
+  Rig<Dim> rig(soil_block(Dim, "friction_angle: 30 deg",
+                          fmt::format(R"(
 numerics: {{pair_precision: double, limiter_soil: 5}}
 boundaries: [{{name: box, type: tank, min: [0, 0, 0], max: [0.8, 0.7, 0.9], open: [top], slip: {}}}]
 probes: [{{name: push, type: force, boundary: box}}]
 )",
-                                 slip)));
+                                      slip)));
   disturb(rig, true);
   rig.plan_it();
   rig.world.clock.dt_acoustic = 0;
@@ -188,7 +189,7 @@ namespace {
 template <int Dim>
 void check_scattered() {
   for (const double apart : {2.2, 1.02}) {
-    Rig<Dim> rig(block(Dim, "friction_angle: 30 deg"));
+    Rig<Dim> rig(soil_block(Dim, "friction_angle: 30 deg"));
     const Vec<Dim> middle = Vec<Dim>::Constant(0.4);
     auto& x = rig.soil().vector(fields::position);
     auto& v = rig.soil().vector(fields::velocity);
@@ -214,8 +215,8 @@ void check_scattered() {
 
 TEST_SUITE("effects") {
   TEST_CASE("soil: forces between particles sum to zero") {
-    check_momentum<2>(exact, 1e-13);
-    check_momentum<3>(exact, 1e-13);
+    check_momentum<2>(exact_soil, 1e-13);
+    check_momentum<3>(exact_soil, 1e-13);
     check_momentum<2>("", 1e-6);
     check_momentum<3>("", 1e-6);
   }
@@ -284,9 +285,10 @@ numerics: {pair_precision: double}
   }
 
   TEST_CASE("soil: a block that drifts keeps everything but its place") {
-    Rig<2> rig(block(2, "friction_angle: 30 deg",
-                     "numerics: {pair_precision: double, volume_fraction_reinitialization: none}",
-                     "velocity: [3, 0, -2]"));
+    Rig<2> rig(
+        soil_block(2, "friction_angle: 30 deg",
+                   "numerics: {pair_precision: double, volume_fraction_reinitialization: none}",
+                   "velocity: [3, 0, -2]"));
     rig.plan_it();
     rig.advance(20);
     for (Index i = 0; i < rig.soil().size(); ++i) {
@@ -296,7 +298,8 @@ numerics: {pair_precision: double}
   }
 
   TEST_CASE("soil: a fixed skeleton stays, and nothing is computed for it") {
-    Rig<2> rig(block(2, "friction_angle: 30 deg, skeleton: fixed", "", "velocity: [3, 0, -2]"));
+    Rig<2> rig(
+        soil_block(2, "friction_angle: 30 deg, skeleton: fixed", "", "velocity: [3, 0, -2]"));
     const auto of_id = [&](Id id) {
       for (Index i = 0; i < rig.soil().size(); ++i)
         if (rig.soil().ids()[i] == id) return rig.soil().vector(fields::position)[i];

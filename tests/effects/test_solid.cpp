@@ -14,7 +14,7 @@ using test::Rig;
 
 namespace {
 
-std::string block(int dimension, const std::string& more = "", const std::string& body = "") {
+std::string solid_block(int dimension, const std::string& more = "", const std::string& body = "") {
   return fmt::format(R"(
 dimension: {}
 resolution: 0.1
@@ -46,7 +46,7 @@ Eigen::Matrix<double, Dim, Dim> turn(double angle) {
 
 template <int Dim>
 void check_rotation(const std::string& numerics, double tolerance) {
-  Rig<Dim> rig(block(Dim, numerics));
+  Rig<Dim> rig(solid_block(Dim, numerics));
   auto& set = rig.world.set("solids");
   const auto r = turn<Dim>(2.0);
   for (Index i = 0; i < set.size(); ++i)
@@ -69,7 +69,7 @@ void check_rotation(const std::string& numerics, double tolerance) {
 /// Stretches, shears and turns the block alike everywhere.
 template <int Dim>
 void check_patch() {
-  Rig<Dim> rig(block(Dim, "numerics: {pair_precision: double}"));
+  Rig<Dim> rig(solid_block(Dim, "numerics: {pair_precision: double}"));
   auto& set = rig.world.set("solids");
   rig.jitter_set("solids", 0.0);
   Eigen::Matrix<double, Dim, Dim> f = turn<Dim>(0.7);
@@ -98,8 +98,8 @@ double disturb(Rig<Dim>& rig, double by) {
 }
 
 template <int Dim>
-void check_momentum(const std::string& numerics, double tolerance) {
-  Rig<Dim> rig(block(Dim, numerics));
+void check_momentum_of_solids(const std::string& numerics, double tolerance) {
+  Rig<Dim> rig(solid_block(Dim, numerics));
   disturb(rig, 0.1);
   rig.plan_it();
   rig.world.clock.dt_solid = 0;
@@ -120,7 +120,7 @@ void check_momentum(const std::string& numerics, double tolerance) {
 /// Work of the internal forces on a small displacement against the change of the strain energy.
 template <int Dim>
 void check_energy(const std::string& numerics, const std::string& body = "") {
-  Rig<Dim> rig(block(Dim, numerics, body));
+  Rig<Dim> rig(solid_block(Dim, numerics, body));
   disturb(rig, 0.1);
   for (Index i = 0; i < rig.world.set("solids").size(); ++i)
     if (rig.world.set("solids").tag(fields::clamp)[i] >= 0)
@@ -158,7 +158,8 @@ void check_energy(const std::string& numerics, const std::string& body = "") {
 /// Largest error of the strain energy of a bent block, in parts of the largest.
 template <int Dim>
 double bending_error(const std::string& gradient) {
-  Rig<Dim> rig(block(Dim, "numerics: {pair_precision: double, solid_gradient: " + gradient + "}"));
+  Rig<Dim> rig(
+      solid_block(Dim, "numerics: {pair_precision: double, solid_gradient: " + gradient + "}"));
   auto& set = rig.world.set("solids");
   const double bend = 1e-3;
   for (Index i = 0; i < set.size(); ++i) {
@@ -208,12 +209,14 @@ TEST_SUITE("effects") {
     check_patch<3>();
   }
   TEST_CASE("internal forces of a solid keep its momentum") {
-    check_momentum<2>("numerics: {pair_precision: double}", 1e-14);
-    check_momentum<3>("numerics: {pair_precision: double}", 1e-14);
-    check_momentum<2>("numerics: {pair_precision: double, solid_gradient: quadratic}", 1e-13);
-    check_momentum<3>("numerics: {pair_precision: double, solid_gradient: quadratic}", 1e-13);
-    check_momentum<2>("", 1e-6);
-    check_momentum<3>("", 1e-6);
+    check_momentum_of_solids<2>("numerics: {pair_precision: double}", 1e-14);
+    check_momentum_of_solids<3>("numerics: {pair_precision: double}", 1e-14);
+    check_momentum_of_solids<2>("numerics: {pair_precision: double, solid_gradient: quadratic}",
+                                1e-13);
+    check_momentum_of_solids<3>("numerics: {pair_precision: double, solid_gradient: quadratic}",
+                                1e-13);
+    check_momentum_of_solids<2>("", 1e-6);
+    check_momentum_of_solids<3>("", 1e-6);
   }
   TEST_CASE("internal forces of a solid are the gradient of its strain energy") {
     for (const std::string gradient : {"linear", "quadratic"}) {
@@ -225,7 +228,7 @@ TEST_SUITE("effects") {
     }
   }
   TEST_CASE("a clamped region rests or moves as prescribed") {
-    Rig<2> rig(block(2, "", R"(clamped:
+    Rig<2> rig(solid_block(2, "", R"(clamped:
       - {shape: {type: half_space, point: [0.2, 0, 0], normal: [1, 0, 0]}}
       - {shape: {type: half_space, point: [0.6, 0, 0], normal: [-1, 0, 0]},
           motion: {displacement: [0.01*t, 0, 0]}})"));

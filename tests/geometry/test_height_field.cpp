@@ -16,7 +16,9 @@ using geometry_test::shape_of;
 
 namespace {
 
-double at(const ShapePtr& s, double x, double y, double z) { return s->signed_distance({x, y, z}); }
+double height_at(const ShapePtr& s, double x, double y, double z) {
+  return s->signed_distance({x, y, z});
+}
 
 }  // namespace
 
@@ -34,11 +36,11 @@ TEST_SUITE("geometry") {
       if (std::abs(exact) < 0.5)
         CHECK(h->signed_distance(p) == doctest::Approx(exact).epsilon(1e-9));
     }
-    CHECK(at(h, -1, 1, -1) == doctest::Approx(1.0));
-    CHECK(at(h, 2, 1, -5) == doctest::Approx(2.0));
-    CHECK(at(h, -3, 1, -7) == doctest::Approx(5.0));
-    CHECK(at(h, 0.2, 1, -2) == doctest::Approx(-0.2));
-    CHECK(at(h, 2, 1, -2.9) == doctest::Approx(-0.1));
+    CHECK(height_at(h, -1, 1, -1) == doctest::Approx(1.0));
+    CHECK(height_at(h, 2, 1, -5) == doctest::Approx(2.0));
+    CHECK(height_at(h, -3, 1, -7) == doctest::Approx(5.0));
+    CHECK(height_at(h, 0.2, 1, -2) == doctest::Approx(-0.2));
+    CHECK(height_at(h, 2, 1, -2.9) == doctest::Approx(-0.1));
     CHECK(h->box().lo.z() == -3.0);
     CHECK(h->box().hi == Vec3(4, 2, 2));
   }
@@ -71,11 +73,11 @@ TEST_SUITE("geometry") {
     const std::string file = "file: " + path.string();
     const ShapePtr h =
         shape_of("{type: height_field, " + file + ", spacing: 10, origin: [0, 0, -100]}", 3);
-    CHECK(std::abs(at(h, 10, 5, 6)) < 1e-9);
+    CHECK(std::abs(height_at(h, 10, 5, 6)) < 1e-9);
     CHECK(std::isinf(h->box().lo.z()));
     const ShapePtr flat =
         shape_of("{type: height_field, " + file + ", spacing: 10, section: 5, scale: 0.1}", 2);
-    CHECK(at(flat, 10, 0, 10.6) == doctest::Approx(0.0).epsilon(1e-9));
+    CHECK(height_at(flat, 10, 0, 10.6) == doctest::Approx(0.0).epsilon(1e-9));
     CHECK(flat->box().lo.y() == 0.0);
     std::ofstream(path) << "100,,102\n110,111,112\n";
     CHECK(read_shape("{type: height_field, " + file + ", spacing: 10}", 3)

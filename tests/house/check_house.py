@@ -113,6 +113,21 @@ def check_names(root):
                 yield f"{path}:1: registers {', '.join(sorted(names)) or 'something'} but is not named so"
 
 
+def check_types(root):
+    """No two headers define a type of one name: all stand in the namespace sphgeo, and linkers take either for both."""
+    first = {}
+    for path in code_files(root / "src"):
+        if path.suffix != ".h":
+            continue
+        for number, line in enumerate(lines_of(path), 1):
+            found = re.match(r"(?:struct|class|enum(?: class)?)\s+(\w+)\b[^;]*(?:\{|$)", line)
+            if not found:
+                continue
+            place = first.setdefault(found.group(1), path)
+            if place != path:
+                yield f"{path}:{number}: '{found.group(1)}' is a type of {place.relative_to(root)}, too"
+
+
 def check_tests(root):
     """tests/<room>/test_*.cpp holds TEST_SUITE("<room>"), so that the room's ctest entry runs it."""
     for path in sorted((root / "tests").glob("*/test_*.cpp")):
@@ -122,7 +137,7 @@ def check_tests(root):
 
 
 def findings(root):
-    for check in (check_includes, check_texts, check_names, check_tests):
+    for check in (check_includes, check_texts, check_names, check_types, check_tests):
         yield from check(root)
 
 

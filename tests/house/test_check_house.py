@@ -55,6 +55,12 @@ class HouseRules(unittest.TestCase):
         self.expect_one("longer", src__core__a_dot_cpp="\n" * (check_house.MAX_LINES + 1))
         self.assertEqual(self.found(src__core__a_dot_cpp="\n" * check_house.MAX_LINES), [])
 
+    def test_one_type_a_name(self):
+        self.expect_one("is a type of src/core/a.h", src__core__a_dot_h=HEADER + "struct Box {\n};\n",
+                        src__core__b_dot_h=HEADER + "class Box final : Shape {\n};\n")
+        self.assertEqual(self.found(src__core__a_dot_h=HEADER + "struct Box {\n};\n",
+                                    src__core__b_dot_h=HEADER + "struct Box;\n"), [])
+
     def test_width(self):
         self.expect_one("wider", src__core__a_dot_cpp="/" * (check_house.MAX_COLUMNS + 1))
         self.assertEqual(self.found(src__core__a_dot_cpp="/" * check_house.MAX_COLUMNS), [])

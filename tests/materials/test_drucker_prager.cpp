@@ -73,17 +73,17 @@ TEST_SUITE("materials") {
     // sigma_1 at failure, pressures; the cone fails where sqrt(J2) = k - alpha I1.
     const double passive = (1 + sine) / (1 - sine),
                  axial = passive * side + 2 * cohesion * std::sqrt(passive);
-    const auto excess = [&](double a, double b, double c, dp::Cone cone) {
+    const auto excess = [&](double a, double b, double c, dp::ConeFit cone) {
       const double mean = (a + b + c) / 3;
       const double root = std::sqrt(
           0.5 * ((a - mean) * (a - mean) + (b - mean) * (b - mean) + (c - mean) * (c - mean)));
       return root / (dp::strength(cohesion, tangent, cone) + dp::slope(tangent, cone) * 3 * mean) -
              1;
     };
-    CHECK(std::abs(excess(axial, side, side, dp::Cone::compression)) < 1e-12);
-    CHECK(std::abs(excess(axial, axial, side, dp::Cone::extension)) < 1e-12);
+    CHECK(std::abs(excess(axial, side, side, dp::ConeFit::compression)) < 1e-12);
+    CHECK(std::abs(excess(axial, axial, side, dp::ConeFit::extension)) < 1e-12);
     // Eq. 14 is weaker in both loadings than the one that is made for compression.
-    CHECK(dp::slope(tangent) < dp::slope(tangent, dp::Cone::compression));
+    CHECK(dp::slope(tangent) < dp::slope(tangent, dp::ConeFit::compression));
     CHECK(dp::slope(tangent) == doctest::Approx(tangent / std::sqrt(9 + 12 * tangent * tangent)));
   }
 

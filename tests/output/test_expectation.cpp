@@ -16,7 +16,7 @@ using std::numbers::pi;
 
 namespace {
 
-const double none = std::nan("");
+const double not_a_number = std::nan("");
 
 /// n + 1 samples of a function at slightly irregular times from 0 to end.
 template <class F>
@@ -62,7 +62,7 @@ TEST_SUITE("output") {
   }
 
   TEST_CASE("a window cuts between samples, and samples without support are left out") {
-    const std::vector<double> t = {0, 1, 2, 3}, y = {0, none, 4, 9};
+    const std::vector<double> t = {0, 1, 2, 3}, y = {0, not_a_number, 4, 9};
     CHECK(cut(t, y, {}, {}).t == std::vector<double>{0, 2, 3});
     const Samples s = cut(t, y, 1, 2.5);
     CHECK(s.t == std::vector<double>{1, 2, 2.5});
@@ -104,7 +104,7 @@ TEST_SUITE("output") {
 
   TEST_CASE("the difference of curves") {
     const Samples s = sampled(10, 2, [](double t) { return t; });
-    const std::vector<double> x = {0, 0.5, 1, 1.5, none, 3}, y = {0, 0.6, 0.9, 1.5, 7, 2};
+    const std::vector<double> x = {0, 0.5, 1, 1.5, not_a_number, 3}, y = {0, 0.6, 0.9, 1.5, 7, 2};
     const CurveDifference d = compare_curve(s, x, y).value();
     CHECK(d.used == 4);
     CHECK(d.skipped == 1);
@@ -117,7 +117,7 @@ TEST_SUITE("output") {
   TEST_CASE("claims of a deck are measured and judged") {
     Series gauge("gauge.left", {{"level", "m", ""}, {"p", "Pa", ""}});
     for (int i = 0; i <= 20; ++i)
-      gauge.add(0.1 * i, std::vector<double>{0.05 * i, i < 10 ? none : 1000 + i});
+      gauge.add(0.1 * i, std::vector<double>{0.05 * i, i < 10 ? not_a_number : 1000 + i});
     const SeriesLookup lookup = [&](const std::string& name) {
       return name == "gauge.left" ? &gauge : nullptr;
     };

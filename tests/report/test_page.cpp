@@ -16,7 +16,7 @@ using namespace sphgeo;
 
 namespace {
 
-std::size_t count(const std::string& text, const std::string& what) {
+std::size_t occurrences(const std::string& text, const std::string& what) {
   std::size_t n = 0;
   for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + what.size()))
     ++n;
@@ -89,15 +89,15 @@ TEST_SUITE("report") {
     CHECK(page.find("@import") == std::string::npos);
     CHECK(page.find("prefers-color-scheme: dark") != std::string::npos);
     CHECK(page.find("name=\"viewport\"") != std::string::npos);
-    CHECK(count(page, "<script") == 1);
+    CHECK(occurrences(page, "<script") == 1);
     CHECK(page.find("<script type=\"application/json\" id=\"summary\">{\"status\":\"done\"") !=
           std::string::npos);
     CHECK(page.find("<span data-path=\"/steps/acoustic\">3\u202f456</span>") != std::string::npos);
     CHECK(page.find("data-path=\"/expect/0/value\">0.75<") != std::string::npos);
     CHECK(page.find("1 of 1 expectation met") != std::string::npos);
     CHECK(page.find("there is &lt;water&gt;") != std::string::npos);
-    CHECK(count(page, "data:image/png;base64,") == 3);
-    CHECK(count(page, "<svg class=\"chart\"") >= 2);
+    CHECK(occurrences(page, "data:image/png;base64,") == 3);
+    CHECK(occurrences(page, "<svg class=\"chart\"") >= 2);
     CHECK(page.size() < most_page_bytes);
   }
 
@@ -109,7 +109,7 @@ TEST_SUITE("report") {
     CHECK(runs[0].label == "one");
     const std::string page = report_page(runs);
     CHECK(page.find("id=\"summary-2\"") != std::string::npos);
-    CHECK(count(page, "data:image/png;base64,") == 6);
+    CHECK(occurrences(page, "data:image/png;base64,") == 6);
     CHECK(page.find("data-path=\"/expect/0/value\" data-run=\"2\">") != std::string::npos);
     const ScenePictures pictures = paint_runs(runs);
     REQUIRE(pictures.rows.size() == 1);
@@ -143,13 +143,13 @@ TEST_SUITE("report") {
     make_run(folder.path(), 2, evil);
     std::ofstream(folder / "resolved.yaml") << "title: \"" << evil << "\"\n</pre>" << evil;
     const std::string page = report_page(read_runs({folder.path()}));
-    CHECK(count(page, "<script") == 1);
-    CHECK(count(page, "</script>") == 1);
+    CHECK(occurrences(page, "<script") == 1);
+    CHECK(occurrences(page, "</script>") == 1);
     CHECK(page.find("<img src=x") == std::string::npos);
-    CHECK(count(page, "</pre>") == 1);
+    CHECK(occurrences(page, "</pre>") == 1);
     // A deck that cannot be read is said to be so, and the rest is there.
     CHECK(page.find("resolved.yaml cannot be read") != std::string::npos);
-    CHECK(count(page, "data:image/png;base64,") == 3);
+    CHECK(occurrences(page, "data:image/png;base64,") == 3);
   }
 
   TEST_CASE("what is missing or damaged is named, and the rest is there") {

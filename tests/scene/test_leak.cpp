@@ -56,10 +56,10 @@ std::string wall(const std::string& name, const std::string& shape, const std::s
   return "  - {name: " + name + ", type: wall, shape: " + shape + more + "}\n";
 }
 // Water from x = 0 to `x`, up to `z`.
-std::string pool(double x, double z) {
+std::string leak_pool(double x, double z) {
   return "bodies: [{name: pool, material: water, shape: " + box(0, 0, x, z) + "}]\n";
 }
-std::string tank(double x, double z, const std::string& open = "top") {
+std::string leak_tank(double x, double z, const std::string& open = "top") {
   return fmt::format(
       "boundaries:\n  - {{name: tank, type: tank, min: [0, 0, 0], max: [{}, 0.4, {}], open: "
       "[{}]}}\n",
@@ -140,29 +140,31 @@ TEST_SUITE("scene") {
   }
 
   TEST_CASE("containers that hold are passed in silence") {
-    CHECK(silent(pool(0.5, 0.4) + tank(1, 0.8)));
-    CHECK(silent(pool(0.5, 0.8) + tank(0.5, 0.8)));  // full to the brim
-    CHECK(silent(pool(0.25, 0.8) + tank(2, 0.4)));   // a column higher than the tank: it settles
-    CHECK(silent(pool(1, 0.4) + trough(0)));
-    CHECK(silent("gravity: 0\n" + pool(1, 0.4) + trough(0.1)));  // no down
-    CHECK(silent(pool(0.5, 0.4)));                               // a drop
-    CHECK(silent(pool(0.5, 0.4) + "boundaries:\n" + wall("plate", box(-1, -0.2, 2, 0, -1, 1))));
-    CHECK(silent(pool(0.5, 0.4) + "boundaries:\n" + wall("plate", box(-1, -0.2, 2, 0, -1, 1)) +
+    CHECK(silent(leak_pool(0.5, 0.4) + leak_tank(1, 0.8)));
+    CHECK(silent(leak_pool(0.5, 0.8) + leak_tank(0.5, 0.8)));  // full to the brim
+    CHECK(silent(leak_pool(0.25, 0.8) +
+                 leak_tank(2, 0.4)));  // a column higher than the tank: it settles
+    CHECK(silent(leak_pool(1, 0.4) + trough(0)));
+    CHECK(silent("gravity: 0\n" + leak_pool(1, 0.4) + trough(0.1)));  // no down
+    CHECK(silent(leak_pool(0.5, 0.4)));                               // a drop
+    CHECK(
+        silent(leak_pool(0.5, 0.4) + "boundaries:\n" + wall("plate", box(-1, -0.2, 2, 0, -1, 1))));
+    CHECK(silent(leak_pool(0.5, 0.4) + "boundaries:\n" + wall("plate", box(-1, -0.2, 2, 0, -1, 1)) +
                  wall("stop", box(0.5, 0, 0.7, 1, -1, 1))));
     // A gate that opens later, in a channel whose end is open.
-    CHECK(silent(pool(0.5, 0.4) + tank(2, 0.8, "top, right") +
+    CHECK(silent(leak_pool(0.5, 0.4) + leak_tank(2, 0.8, "top, right") +
                  wall("gate", box(0.5, 0, 0.7, 0.8), ", motion: {displacement: [0, 0, 2*t]}")));
     // A gate that starts lifted, in a closed tank.
-    CHECK(silent(pool(0.5, 0.4) + tank(2, 0.8) + wall("gate", box(0.5, 0.1, 0.7, 0.8))));
+    CHECK(silent(leak_pool(0.5, 0.4) + leak_tank(2, 0.8) + wall("gate", box(0.5, 0.1, 0.7, 0.8))));
     // The upper of two vessels runs out into the lower one.
     CHECK(silent(
-        pool(1, 0.4) + trough(0.1) +
+        leak_pool(1, 0.4) + trough(0.1) +
         "  - {name: basin, type: tank, min: [-1, -1, -1.5], max: [3, 1.4, -0.5], open: [top]}\n"));
   }
 
   TEST_CASE("a gap of one spacing is found with its place and the nearest boundary") {
-    const Leaks flat = leaks<2>(pool(1, 0.4) + trough(0.05)),
-                deep = leaks<3>(pool(1, 0.4) + trough(0.05));
+    const Leaks flat = leaks<2>(leak_pool(1, 0.4) + trough(0.05)),
+                deep = leaks<3>(leak_pool(1, 0.4) + trough(0.05));
     CHECK(flat.found.size() == 1);
     CHECK((flat.found == Found{"W125 boundaries[2]"} || flat.found == Found{"W125 boundaries[0]"}));
     CHECK(flat.message.find("body 'pool' can run out") == 0);
@@ -172,15 +174,15 @@ TEST_SUITE("scene") {
     CHECK(deep.found.size() == 1);
     CHECK(deep.message.find("z = 0.02") != std::string::npos);
     // Far from the water, which gets there later.
-    CHECK(leaks<2>(pool(0.2, 0.4) + trough(0.05)).found.size() == 1);
+    CHECK(leaks<2>(leak_pool(0.2, 0.4) + trough(0.05)).found.size() == 1);
     // Less than half a spacing lets nothing through.
-    CHECK(silent(pool(1, 0.4) + trough(0.02)));
+    CHECK(silent(leak_pool(1, 0.4) + trough(0.02)));
   }
 
   TEST_CASE("a scene too wide for its spacing is not searched, and that is said") {
     // A leaking trough, and a second one far away and below.
     const auto far = [](double at) {
-      return pool(1, 0.4) + trough(0.05) +
+      return leak_pool(1, 0.4) + trough(0.05) +
              wall("far", fmt::format("{{type: box, min: [{}, 0, {}], max: [{}, 0.4, {}]}}", at, -at,
                                      at + 0.2, 0.2 - at));
     };
@@ -200,7 +202,7 @@ TEST_SUITE("scene") {
              wall("front", box(0, 0, 1, 0.8, -0.2, 0)) + wall("back", box(0, 0, 1, 0.8, 0.4, 0.6));
     };
     const Leaks down =
-        leaks<3>(pool(1, 0.4) + floor(wall("right", box(1, 0, 1.2, 0.8, -0.2, 0.6))));
+        leaks<3>(leak_pool(1, 0.4) + floor(wall("right", box(1, 0, 1.2, 0.8, -0.2, 0.6))));
     CHECK(down.found.size() == 1);
     CHECK(down.message.find("x = 0.5") != std::string::npos);
     // The settled water stays below the hole, but the wave of the dam break reaches it and falls
@@ -210,33 +212,34 @@ TEST_SUITE("scene") {
         wall("left", box(-0.2, 0, 0, 0.8, -0.2, 0.6)) + wall("front", box(0, 0, 1, 0.8, -0.2, 0)) +
         wall("back", box(0, 0, 1, 0.8, 0.4, 0.6)) + wall("low", box(1, -0.2, 1.2, 0.3, -0.2, 0.6)) +
         wall("high", box(1, 0.4, 1.2, 0.8, -0.2, 0.6));
-    CHECK(leaks<2>(pool(0.25, 0.8) + holed).found.size() == 1);
-    CHECK(leaks<2>(pool(0.25, 0.8) + holed).message.find("z = 0.35") != std::string::npos);
-    CHECK(leaks<2>(pool(0.25, 0.3) + holed).found.empty());
+    CHECK(leaks<2>(leak_pool(0.25, 0.8) + holed).found.size() == 1);
+    CHECK(leaks<2>(leak_pool(0.25, 0.8) + holed).message.find("z = 0.35") != std::string::npos);
+    CHECK(leaks<2>(leak_pool(0.25, 0.3) + holed).found.empty());
     // Front wall and right wall do not meet: a slit from floor to rim.
     std::string slit = trough(0);
     slit.replace(slit.find(box(0, 0, 1, 0.8, -0.2, 0)), box(0, 0, 1, 0.8, -0.2, 0).size(),
                  box(0, 0, 0.9, 0.8, -0.2, 0));
-    CHECK(leaks<3>(pool(1, 0.4) + slit).found.size() == 1);
-    CHECK(leaks<2>(pool(1, 0.4) + slit).found.empty());
+    CHECK(leaks<3>(leak_pool(1, 0.4) + slit).found.size() == 1);
+    CHECK(leaks<2>(leak_pool(1, 0.4) + slit).found.empty());
   }
 
   TEST_CASE(
       "water above a rim all around is found, a low wall on one side is not taken for a mistake") {
-    CHECK(leaks<2>(pool(1, 0.8) + trough(0, 0.75)).found.size() == 1);
-    CHECK(silent(pool(1, 0.8) + trough(0, 0.4)));
+    CHECK(leaks<2>(leak_pool(1, 0.8) + trough(0, 0.75)).found.size() == 1);
+    CHECK(silent(leak_pool(1, 0.8) + trough(0, 0.4)));
   }
 
   TEST_CASE("an open face is a note, and only when the water starts there") {
-    const Leaks at = leaks<2>(pool(1, 0.4) + tank(1, 0.8, "top, right"));
+    const Leaks at = leaks<2>(leak_pool(1, 0.4) + leak_tank(1, 0.8, "top, right"));
     CHECK(at.found == Found{"N126 boundaries[0].open"});
     CHECK(at.message.find("'right'") != std::string::npos);
-    CHECK(leaks<3>(pool(1, 0.4) + tank(1, 0.8, "front")).found == Found{"N126 boundaries[0].open"});
-    CHECK(silent(pool(0.5, 0.4) + tank(1, 0.8, "top, right")));
+    CHECK(leaks<3>(leak_pool(1, 0.4) + leak_tank(1, 0.8, "front")).found ==
+          Found{"N126 boundaries[0].open"});
+    CHECK(silent(leak_pool(0.5, 0.4) + leak_tank(1, 0.8, "top, right")));
     // The face opens into another boundary that holds the water.
     CHECK(
         leaks<2>(
-            pool(1, 0.4) + tank(1, 0.8, "top, right") +
+            leak_pool(1, 0.4) + leak_tank(1, 0.8, "top, right") +
             "  - {name: next, type: tank, min: [1, 0, 0], max: [2, 0.4, 0.8], open: [top, left]}\n")
             .found.empty());
   }
