@@ -71,6 +71,7 @@ def main():
     arguments.add_argument("--all", action="store_true", help="no sampling")
     arguments.add_argument("--most", type=int, default=400, help="mistakes per deck without --all")
     arguments.add_argument("--verbose", action="store_true", help="print every wrong answer")
+    arguments.add_argument("--jobs", type=int, default=os.cpu_count(), help="checks at the same time")
     arguments.add_argument("decks", nargs="*", type=Path)
     given = arguments.parse_args()
     sphgeo = str(Path(given.sphgeo).resolve())
@@ -78,7 +79,7 @@ def main():
     schema = json.loads(subprocess.run([sphgeo, "schema"], capture_output=True, check=True).stdout)
 
     tally, bad, clean = Counter(), [], 0
-    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(os.cpu_count()) as pool:
+    with tempfile.TemporaryDirectory() as folder, ThreadPoolExecutor(given.jobs) as pool:
         # The mutated decks stand where the decks stand, so that the files they name are found.
         shutil.copytree(ROOT / "decks", Path(folder) / "decks")
         for shared in ("share", "schemas", "tests"):

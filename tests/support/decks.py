@@ -1,4 +1,4 @@
-"""The shipped decks, for tests that go through all of them."""
+"""The shipped decks, for tests that go through all of them; as a program it prints them, one a line."""
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -10,3 +10,7 @@ def affordable():
     """Paths of all decks but the large ones, relative to the project."""
     found = sorted(p.relative_to(ROOT).as_posix() for p in (ROOT / "decks").rglob("*.yaml"))
     return [deck for deck in found if deck not in LARGE]
+
+
+if __name__ == "__main__":
+    print("\n".join(affordable()))
