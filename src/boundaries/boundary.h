@@ -17,27 +17,27 @@ namespace sphgeo {
 /// What a boundary needs to place its particles.
 struct Placement {
   double spacing;    ///< dp, m
-  double thickness;  ///< how deep the wall must be so that no kernel sees its end, m
+  double thickness;  ///< wall thickness that fills every kernel support, m
   int dimension;
   Aabb clip{};  ///< region of interest for solids without end; empty: none
 };
 
-/// One wall particle: place and outward unit normal of the solid (towards the fluid).
+/// One wall particle: position and outward unit normal of the solid (towards the fluid).
 struct WallPoint {
   Vec3 position;
   Vec3 normal;
-  bool corner = false;  ///< behind two walls at once, see mark_corners
+  bool corner = false;  ///< in a concave corner of two walls, see mark_corners
 };
 
-/// A side of a boundary that the deck left without a wall, closed by points one spacing apart.
+/// An open side of a boundary, closed by points one spacing apart.
 struct OpenFace {
   std::string name;
-  int axis;   ///< that it is across
+  int axis;   ///< normal to it
   bool high;  ///< on the side of larger coordinates
   std::vector<Vec3> points;
 };
 
-/// How a wall acts on the tangential motion of the water.
+/// Boundary condition for the tangential velocity of the water.
 enum class Slip { no_slip, free_slip };
 
 /// Base of all boundaries that are made of wall particles (paper 3.2.3, last paragraph).
@@ -47,7 +47,7 @@ struct WallBoundary : BoundarySpec {
 
   /// The wall particles at t = 0, in a fixed order.
   virtual std::vector<WallPoint> points(const Placement&) const = 0;
-  /// About how many they are, without placing them; not finite when nothing bounds them.
+  /// Their approximate number, without placing them; not finite when the solid is unbounded.
   virtual double expected_points(const Placement& p) const {
     const auto shape = solid(p);
     return shape ? estimate_layers(*shape, p.spacing, p.dimension, p.thickness, LayerSide::inside,
@@ -65,9 +65,10 @@ struct WallBoundary : BoundarySpec {
 /// Declares the keys that all wall boundaries share.
 template <class B>
 void declare_wall_keys(Schema<B>& s) {
-  s.optional("slip", &B::slip, unit::none, "whether water sticks to the wall or slides along it")
+  s.optional("slip", &B::slip, unit::none, "no_slip or free_slip condition for the water")
       .choices({"no_slip", "free_slip"});
-  s.optional("motion", &B::motion, unit::none, "prescribed motion; a boundary without one rests");
+  s.optional("motion", &B::motion, unit::none,
+             "prescribed motion; a boundary without one is at rest");
 }
 
 }  // namespace sphgeo

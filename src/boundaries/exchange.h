@@ -1,5 +1,5 @@
 #pragma once
-// Borders through which particles enter or leave. What they do is done by effects.
+// Boundaries through which particles enter or leave. Effects insert and remove the particles.
 
 #include <array>
 #include <memory>
@@ -12,11 +12,12 @@
 
 namespace sphgeo {
 
-/// A border that water or soil crosses.
+/// An open boundary, crossed by water or soil.
 struct ExchangeBoundary : BoundarySpec {
-  /// Where particles appear, m; empty for a border through which they only leave.
+  /// The box in which particles are inserted, m; empty for a boundary through which they only
+  /// leave.
   virtual Aabb source_box() const { return {}; }
-  /// About how many particles enter between two times, s; empty when that cannot be known.
+  /// Approximate number of particles that enter between two times, s; empty when it is unknown.
   virtual std::optional<double> expected_particles(double spacing, int dimension, double from,
                                                    double to) const {
     (void)spacing, (void)dimension, (void)from, (void)to;
@@ -34,11 +35,11 @@ struct Inlet final : ExchangeBoundary {
   double from = 0;
   std::optional<double> until;
 
-  /// The axis that the rectangle is across: 0, 1 or 2.
+  /// The axis normal to the rectangle: 0, 1 or 2.
   int axis(int dimension) const;
   /// The velocity at a time, m/s.
   Vec3 velocity_at(double time) const;
-  /// The places of one layer, by rows.
+  /// The positions of one layer, by rows.
   std::vector<Vec3> layer(double spacing, int dimension) const;
 
   Aabb source_box() const override;
@@ -47,13 +48,13 @@ struct Inlet final : ExchangeBoundary {
   static Schema<Inlet> schema();
 };
 
-/// Keeps the surface of the water in a region at a level: where it has sunk, water without pressure
-/// is added.
+/// Keeps the water surface in a region at a level: where it is lower, water at zero pressure is
+/// inserted.
 struct Reservoir final : ExchangeBoundary {
   std::shared_ptr<const Shape> shape;
   double level = 0;  ///< z of the surface, m
 
-  /// The places just below the level that water may be added at.
+  /// The positions just below the level at which water may be inserted.
   std::vector<Vec3> places(double spacing, int dimension) const;
   Aabb source_box() const override;
   std::optional<double> expected_particles(double, int, double, double) const override {
@@ -62,7 +63,7 @@ struct Reservoir final : ExchangeBoundary {
   static Schema<Reservoir> schema();
 };
 
-/// A region in which particles are taken out of the scene.
+/// A region in which particles are removed.
 struct Outlet final : ExchangeBoundary {
   std::shared_ptr<const Shape> shape;
   std::vector<std::string> sets{"water", "soil"};

@@ -16,13 +16,13 @@ Schema<Inlet> Inlet::schema() {
   s.required("velocity", &Inlet::velocity, unit::speed, "velocity of the water, formulas of t")
       .only_of("t");
   s.optional("share", &Inlet::share, unit::none,
-             "part of the places in a layer that get a particle, chosen at random: below 1 it "
-             "rains in drops")
+             "fraction of the positions in a layer that get a particle, chosen at random: below 1 "
+             "the inflow is rain of single drops")
       .above(0)
       .at_most(1);
-  s.optional("seed", &Inlet::seed, unit::none, "another seed, other drops").at_least(0);
-  s.optional("from", &Inlet::from, unit::time, "it is closed before this time").at_least(0);
-  s.optional("until", &Inlet::until, unit::time, "it is closed after this time");
+  s.optional("seed", &Inlet::seed, unit::none, "another seed gives other drops").at_least(0);
+  s.optional("from", &Inlet::from, unit::time, "closed before this time").at_least(0);
+  s.optional("until", &Inlet::until, unit::time, "closed after this time");
   s.check([](Inlet& inlet, CheckContext& c) {
     int flat = 0;
     for (const int k : {0, 1, 2})
@@ -32,12 +32,13 @@ Schema<Inlet> Inlet::schema() {
       }
     if (flat != 1)
       return c.error("max", "an inlet is flat: min and max differ along all axes but one",
-                     "give both the same coordinate along the axis that the water crosses");
+                     "give both the same coordinate along the direction of flow");
     const double across = inlet.velocity_at(inlet.from)[inlet.axis(c.dimension())];
     if (across == 0)
-      c.error("velocity", "the water does not cross the rectangle when the inlet opens",
+      c.error("velocity", "the velocity is parallel to the inlet when it opens",
               "give it a velocity along the axis in which min and max are the same");
-    if (inlet.until && *inlet.until <= inlet.from) c.error("until", "it ends before it begins", "");
+    if (inlet.until && *inlet.until <= inlet.from)
+      c.error("until", "the inlet closes before it opens", "");
   });
   return s;
 }

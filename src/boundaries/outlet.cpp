@@ -4,10 +4,11 @@
 namespace sphgeo {
 
 Schema<Outlet> Outlet::schema() {
-  Schema<Outlet> s("outlet", "a region in which particles are taken out of the scene, and counted");
+  Schema<Outlet> s("outlet", "a region in which particles are removed and counted");
   s.required("shape", &Outlet::shape, unit::none,
-             "the region; what enters it is gone after the advection step");
-  s.optional("sets", &Outlet::sets, unit::none, "the sets that leave").choices({"water", "soil"});
+             "the region; particles that enter it are removed after the advection step");
+  s.optional("sets", &Outlet::sets, unit::none, "the particle sets that are removed")
+      .choices({"water", "soil"});
   return s;
 }
 

@@ -7,16 +7,17 @@ namespace sphgeo {
 
 Schema<Reservoir> Reservoir::schema() {
   Schema<Reservoir> s("reservoir",
-                      "keeps the surface of the water in a region at a level: where it has sunk, "
-                      "water without pressure is added");
-  s.required("shape", &Reservoir::shape, unit::none, "the region that water is added in, bounded");
+                      "keeps the water surface in a region at a level: where it is lower, water at "
+                      "zero pressure is inserted");
+  s.required("shape", &Reservoir::shape, unit::none,
+             "the region in which water is inserted; bounded");
   s.required("level", &Reservoir::level, unit::length, "z of the surface");
   s.check([](Reservoir& r, CheckContext& c) {
     const Aabb box = r.shape->box();
     if (!(box.lo.allFinite() && box.hi.allFinite()))
       return c.error("shape", "the region is unbounded", "intersect it with a box");
     if (box.lo.z() > r.level - c.resolution() || box.hi.z() < r.level)
-      c.error("level", "the region does not hold the layer below this level",
+      c.error("level", "the region does not contain the layer below this level",
               "let its box reach from a spacing below to the level");
   });
   return s;
@@ -25,7 +26,7 @@ Schema<Reservoir> Reservoir::schema() {
 std::vector<Vec3> Reservoir::places(double spacing, int dimension) const {
   const Aabb box = shape->box();
   std::vector<Vec3> places;
-  // Never closer than a spacing: each gets the mass of a whole one.
+  // At least a spacing apart: each particle gets its full mass.
   const auto count = [&](int k) {
     return std::max<Index>(
         1, static_cast<Index>(std::floor((box.hi[k] - box.lo[k]) / spacing + 1e-9)));

@@ -38,7 +38,7 @@ struct Tank final : WallBoundary {
     s.required("min", &Tank::min, unit::length, "lower corner of the inside");
     s.required("max", &Tank::max, unit::length, "upper corner of the inside");
     s.optional("open", &Tank::open, unit::none,
-               "faces without a wall (front and back are those across y)")
+               "faces without a wall (front and back are normal to y)")
         .choices({"left", "right", "front", "back", "bottom", "top"});
     declare_wall_keys(s);
     s.check([](Tank& t, CheckContext& c) {
@@ -92,8 +92,8 @@ struct Tank final : WallBoundary {
     return a;
   }
 
-  /// Towards the inside; on the rim of an open face towards that face, so that water which jumps
-  /// onto the rim lies on it and is not drawn through the wall.
+  /// Towards the inside; on the rim of an open face towards that face, so that water that comes to
+  /// lie on the rim is not attracted through the wall.
   Vec3 normal_at(const Vec3& x, const Vec3& inner, int dimension) const {
     double nearest = (inner - x).norm();
     Vec3 normal = (inner - x) / nearest;
@@ -114,7 +114,8 @@ struct Tank final : WallBoundary {
       for (std::size_t j = 0; j < ay.at.size(); ++j)
         for (std::size_t i = 0; i < ax.at.size(); ++i) {
           if (!ax.outside[i] && !ay.outside[j] && !az.outside[k]) {
-            // On to the far wall: the inside of a large tank has far more places than its walls.
+            // Skip to the opposite wall: the inside of a large tank has far more positions than its
+            // walls.
             while (i + 1 < ax.at.size() && !ax.outside[i + 1]) ++i;
             continue;
           }
@@ -174,7 +175,7 @@ struct Tank final : WallBoundary {
     outer->max = inner->max = max;
     for (const Face& f : faces) {
       const bool gap = is_open(f.axis, f.high);
-      // An open face has no wall: the inside sticks out there and the outside does not.
+      // An open face has no wall: the inner box extends beyond it and the outer one does not.
       Vec3& out = f.high ? outer->max : outer->min;
       Vec3& in = f.high ? inner->max : inner->min;
       const double by = f.high ? p.thickness : -p.thickness;

@@ -11,7 +11,7 @@ struct Wall final : WallBoundary {
   std::shared_ptr<const Shape> shape;
 
   static Schema<Wall> schema() {
-    Schema<Wall> s("wall", "a rigid solid of any shape, at rest or moved as prescribed");
+    Schema<Wall> s("wall", "a rigid solid of any shape, at rest or with a prescribed motion");
     s.required("shape", &Wall::shape, unit::none, "the solid");
     declare_wall_keys(s);
     return s;
@@ -19,7 +19,7 @@ struct Wall final : WallBoundary {
 
   std::vector<WallPoint> points(const Placement& p) const override {
     std::vector<WallPoint> wall;
-    // Only as deep as a kernel reaches: the heart of a solid touches nothing.
+    // Only as deep as the kernel support: particles farther inside have no neighbors in fluids.
     for (const Vec3& x :
          fill_layers(*shape, p.spacing, p.dimension, p.thickness, LayerSide::inside, p.clip))
       wall.push_back({x, outward_normal(*shape, x, 0.5 * p.spacing, p.dimension)});

@@ -1,4 +1,4 @@
-// Baselines: what a later run is compared with, small enough to be kept beside the decks.
+// Baselines: results that later runs are compared with, small enough to be stored with the decks.
 
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* baseline_kind = "sphgeo baseline 1";
 
-/// Seven digits: more would tell nothing, as fields are compared by tolerances far above.
+/// Seven digits: the tolerances of fields are far larger.
 Json number(double value) {
   if (!std::isfinite(value)) return nullptr;
   return std::strtod(fmt::format("{:.7g}", value).c_str(), nullptr);
@@ -137,18 +137,18 @@ RunData from_json(const Json& j) {
     SetState set;
     set.set = row.at("name");
     if (!row.at("particles").is_number_unsigned())
-      throw std::runtime_error("the number of particles is no whole number");
+      throw std::runtime_error("the number of particles is not a whole number");
     set.particles = row.at("particles").get<Index>();
     if (set.particles < 0 || set.particles > (Index{1} << 50))
-      throw std::runtime_error("the number of particles is absurd");
+      throw std::runtime_error("the number of particles is out of range");
     const std::vector<double> x = numbers_or_nan(row.at("x")), y = numbers_or_nan(row.at("y")),
                               z = numbers_or_nan(row.at("z"));
     if (x.size() != y.size() || x.size() != z.size())
-      throw std::runtime_error("the places of a set differ in length");
+      throw std::runtime_error("the positions of a set differ in length");
     for (std::size_t k = 0; k < x.size(); ++k) {
       set.places.emplace_back(x[k], y[k], z[k]);
       if (!set.places.back().allFinite())
-        throw std::runtime_error("the place of a particle is no number");
+        throw std::runtime_error("the position of a particle is not a number");
     }
     for (const auto& [name, values] : row.at("fields").items()) {
       set.fields.push_back({name, numbers_or_nan(values)});
@@ -199,9 +199,10 @@ RunData read_baseline(const std::string& path) {
   const Json j = Json::parse(read_file(path), nullptr, false);
   const auto at = j.is_object() ? j.find("kind") : j.end();
   if (!j.is_object() || at == j.end() || *at != baseline_kind)
-    throw Error(ExitCode::usage, path +
-                                     ": this is no baseline; expected a run folder, or a file that "
-                                     "'sphgeo compare RUN FILE --update' has written");
+    throw Error(ExitCode::usage,
+                path +
+                    ": this is not a baseline; expected a run folder, or a file that "
+                    "'sphgeo compare RUN FILE --update' has written");
   try {
     RunData run = from_json(j);
     run.path = path;

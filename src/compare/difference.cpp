@@ -15,8 +15,8 @@ namespace sphgeo {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-/// Places of a set that are looked up in the other run: enough for a mean, few enough for sets of
-/// millions.
+/// Positions of a set that are compared with the other run: enough for a mean, few enough for sets
+/// of millions.
 constexpr std::size_t most_places = 2000;
 
 struct Span {
@@ -58,7 +58,7 @@ Span span_of(const std::vector<double>& values) {
   return span;
 }
 
-/// A difference as a share; of a scale of zero any difference is one of all.
+/// A difference over the scale; for a scale of zero any difference counts as 1.
 double share(double difference, double scale) {
   if (difference == 0) return 0;
   return scale > 0 ? difference / scale : infinite;
@@ -142,8 +142,8 @@ class Comparison {
           const std::string name = b.probe + "." + b.column;
           std::string note = fmt::format("range {:.4g}", d.range);
           if (d.unsupported > 0)
-            note +=
-                fmt::format("; at {:.3g} % of the times only one has a value", 100 * d.unsupported);
+            note += fmt::format("; at {:.3g} % of the times only one of them has a value",
+                                100 * d.unsupported);
           add("probe", name, std::max(share(d.rms, scale), d.unsupported), note);
         });
   }
@@ -225,7 +225,8 @@ class Comparison {
               fmt::format("{}, was {}", now.value ? fmt::format("{:.6g}", *now.value) : "no value",
                           then.value ? fmt::format("{:.6g}", *then.value) : "none");
           if (now.pass != then.pass)
-            note += now.pass ? "; passes now" : "; misses its deck's tolerance, met it before";
+            note +=
+                now.pass ? "; passes now" : "; misses the deck's tolerance, which the baseline met";
           if ((then.pass && !now.pass) || now.value.has_value() != then.value.has_value()) {
             found_.push_back(
                 {"result", b.first, infinite, tolerances_.of("result", b.first), false, note});
@@ -234,7 +235,7 @@ class Comparison {
           if (!now.value) return add("result", b.first, 0, note);
           double change = std::abs(*now.value - *then.value);
           if (change <= 1e-6 * std::abs(*then.value)) change = 0;
-          // A value near zero is small against what the deck allows it.
+          // A value near zero is compared with the deck's tolerance.
           add("result", b.first, share(change, std::max(std::abs(*then.value), then.tolerance)),
               note);
         });
@@ -255,7 +256,7 @@ double at_time(const ProbeCurve& curve, double time, std::size_t& from) {
     return time <= t.back() + 0.02 * (t.back() - t.front()) ? curve.y.back() : std::nan("");
   if (time <= t.front())
     return time >= t.front() - 0.02 * (t.back() - t.front()) ? curve.y.front() : std::nan("");
-  if (!(time > t.front() && time < t.back())) return std::nan("");  // a time that is no number
+  if (!(time > t.front() && time < t.back())) return std::nan("");  // a time that is not a number
   while (from + 2 < t.size() && t[from + 1] <= time) ++from;
   const double width = t[from + 1] - t[from];
   if (!(width > 0)) return curve.y[from + 1];

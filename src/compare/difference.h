@@ -31,7 +31,7 @@ struct RunDifference {
 std::vector<RunDifference> compare_runs(const RunData& run, const RunData& baseline,
                                         const Tolerances& tolerances);
 
-/// How far a curve is from the baseline's at the baseline's times.
+/// Difference of a curve from that of the baseline, at the baseline's times.
 struct CurveDistance {
   double rms = 0;          ///< root mean square, in the curve's unit
   double range = 0;        ///< of the baseline's curve
@@ -39,7 +39,7 @@ struct CurveDistance {
 };
 CurveDistance curve_distance(const ProbeCurve& run, const ProbeCurve& baseline);
 
-/// For each place the index of the nearest of `among` (not empty).
+/// For each position the index of the nearest of `among` (not empty).
 std::vector<std::size_t> nearest_places(const std::vector<Vec3>& places,
                                         const std::vector<Vec3>& among);
 

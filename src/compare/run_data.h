@@ -1,6 +1,5 @@
 #pragma once
-// What two runs are compared by: curves of probes, fields at the end, conserved quantities,
-// results.
+// Data of a run for comparison: curves of probes, fields at the end, conserved quantities, results.
 
 #include <map>
 #include <nlohmann/json.hpp>
@@ -27,7 +26,7 @@ struct FieldState {
 /// A set of particles at the end of a run.
 struct SetState {
   std::string set;
-  Index particles = 0;       ///< of the whole set; places may be a sample of it
+  Index particles = 0;       ///< of the whole set; positions may be a sample of it
   std::vector<Vec3> places;  ///< m
   std::vector<FieldState> fields;
 };
@@ -61,7 +60,7 @@ struct RunData {
 RunData read_run_data(const std::string& folder);
 
 /// Reads a baseline that write_baseline() has written. Throws IoError; Error (usage) with the path
-/// when it is damaged or no baseline.
+/// when it is damaged or not a baseline.
 RunData read_baseline(const std::string& path);
 
 /// How much of a run a baseline keeps.

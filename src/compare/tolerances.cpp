@@ -16,7 +16,7 @@ Schema<ToleranceRule> ToleranceRule::schema() {
 }
 
 Schema<Tolerances> Tolerances::schema() {
-  Schema<Tolerances> s("tolerances", "How far a run may be from its baseline.");
+  Schema<Tolerances> s("tolerances", "Allowed differences of a run from its baseline.");
   s.optional("probes", &Tolerances::probes, unit::none,
              "root mean square of a curve's difference, by its range")
       .at_least(0);
@@ -38,7 +38,7 @@ Schema<Tolerances> Tolerances::schema() {
              "difference in the number of particles")
       .at_least(0);
   s.optional("rules", &Tolerances::rules, unit::none,
-             "tolerances for single findings; the last that fits decides");
+             "tolerances for single findings; the last that matches applies");
   return s;
 }
 

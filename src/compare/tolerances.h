@@ -1,5 +1,5 @@
 #pragma once
-// How far a run may be from its baseline.
+// Allowed differences of a run from its baseline.
 
 #include <string>
 #include <vector>
@@ -11,7 +11,7 @@ namespace sphgeo {
 /// A tolerance for findings by name.
 struct ToleranceRule {
   std::string name;      ///< of findings, with * for any part: "probe gauge.*"
-  double tolerance = 0;  ///< 1e300: whatever it is
+  double tolerance = 0;  ///< 1e300: any difference
   static Schema<ToleranceRule> schema();
 };
 
@@ -24,7 +24,7 @@ struct Tolerances {
   double results = 0.02;
   double steps = 0.05;
   double particles = 0;
-  std::vector<ToleranceRule> rules;  ///< the last that fits decides
+  std::vector<ToleranceRule> rules;  ///< the last that matches applies
   static Schema<Tolerances> schema();
 
   /// The tolerance of the finding "kind name" ("probe gauge.level").

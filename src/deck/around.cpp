@@ -22,20 +22,19 @@ bool is_copy(const std::string& name, const std::string& original) {
                      [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Shapes of the bodies that go by a name.
+/// Shapes of the bodies that a name refers to: the body itself and its copies.
 std::vector<Node> shapes_of(const std::vector<Node>& bodies, const std::string& name) {
   std::vector<Node> out;
   for (const Node& body : bodies) {
     const std::string own = name_of(body);
     if (own != name && !is_copy(own, name)) continue;
-    // A shape that is missing is reported when its turn comes.
+    // A missing shape is reported when the body is read.
     if (const Entry* shape = body.find("shape")) out.push_back(shape->value);
   }
   return out;
 }
 
-/// Names to offer to one who has misspelt one: those of all other bodies, and of what they are
-/// copies of.
+/// Suggestions for a misspelt name: all other bodies, and the bodies that they are copies of.
 std::vector<std::string> candidates(const std::vector<Node>& bodies, const std::string& but) {
   std::vector<std::string> out;
   for (const Node& body : bodies) {

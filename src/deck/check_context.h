@@ -1,5 +1,6 @@
 #pragma once
-// What a rule across keys may know and say: the scene's dimension, and findings tied to deck lines.
+// What a rule across keys knows and reports: the scene's dimension, and findings tied to deck
+// lines.
 
 #include <string>
 

@@ -134,7 +134,7 @@ class PolymorphicType final : public ValueType {
     const RegistryCore& registry = hooks_.registry();
     if (node.kind != Node::Kind::map) return wrong_kind(node, words(key), path, reading);
     const RegistryEntry* entry = entry_of(node, path, reading);
-    if (entry == nullptr) return false;  // its keys cannot be judged: no further errors
+    if (entry == nullptr) return false;  // its keys cannot be checked: no further errors
     std::shared_ptr<void> face = entry->create();
     hooks_.type_name(face.get()) = entry->name;
     const bool good =
@@ -158,7 +158,7 @@ class PolymorphicType final : public ValueType {
     const Json reference{{"$ref", "#/definitions/" + registry.interface_name()}};
     if (definitions.contains(registry.interface_name())) return reference;
     definitions[registry.interface_name()] =
-        Json::object();  // stops types that hold their own kind
+        Json::object();  // stops the recursion of types that contain their own kind
     Json types = Json::array();
     for (const RegistryEntry& entry : registry.entries()) {
       const std::shared_ptr<void> face = entry.create();

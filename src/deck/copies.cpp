@@ -15,25 +15,26 @@ Schema<Copies> Copies::schema() {
   Schema<Copies> s(
       "copies",
       "Many bodies from one: the key `copies` of a body makes bodies NAME_1, NAME_2 ... of it, at "
-      "random places without overlap. Boulders also differ in their seed.");
+      "random positions without overlap. Boulders also differ in their seed.");
   s.required("count", &Copies::count, unit::none, "how many").at_least(1).at_most(10000);
   s.required("region", &Copies::region, unit::none,
              "the region inside of which they are placed; it must be bounded");
   s.optional("sizes", &Copies::sizes, unit::none,
-             "least and largest factor on the lengths of the shape; those of the copies are spread "
-             "evenly between")
+             "smallest and largest scale factor of the shape; the factors of the copies are spread "
+             "evenly between them")
       .items(2, 2)
       .above(0);
-  s.optional("seed", &Copies::seed, unit::none, "another seed, other sizes, places and turns")
+  s.optional("seed", &Copies::seed, unit::none,
+             "another seed gives other sizes, positions and rotations")
       .at_least(0);
-  s.optional(
-       "gap", &Copies::gap, unit::length,
-       "least distance between two copies; auto: two spacings, so that they do not touch at t = 0")
+  s.optional("gap", &Copies::gap, unit::length,
+             "smallest distance between two copies; auto: two spacings, so that they do not touch "
+             "at t = 0")
       .at_least(0);
-  s.optional("turned", &Copies::turned, unit::none, "whether each copy is turned at random");
+  s.optional("turned", &Copies::turned, unit::none, "whether each copy is rotated at random");
   s.check([](Copies& k, CheckContext& c) {
     if (k.sizes[0] > k.sizes[1])
-      c.error("sizes", "the least size is larger than the largest", "write [least, largest]");
+      c.error("sizes", "the smallest size is larger than the largest", "write [smallest, largest]");
     const Aabb box = k.region->box();
     if (!(box.lo.allFinite() && box.hi.allFinite()))
       c.error("region", "the region is unbounded", "intersect it with a box");
@@ -57,7 +58,7 @@ struct Draws {
   }
 };
 
-/// Reads a part of the deck ahead of its turn, with its rules. What is wrong goes to `found`.
+/// Reads a part of the deck before the rest, with its rules. Findings go to `found`.
 template <class Read>
 bool read_ahead(const DeckReading& reading, Diagnostics& found, Places& places, Read&& read) {
   DeckReading trial(found, places);
@@ -71,7 +72,7 @@ bool read_ahead(const DeckReading& reading, Diagnostics& found, Places& places, 
   return !found.has_errors();
 }
 
-/// A ball around the middle of the shape's box that holds all of the shape.
+/// A ball around the center of the shape's box that contains the shape.
 struct Ball {
   Vec3 center = Vec3::Zero();
   double radius = 0;
@@ -122,7 +123,7 @@ struct Placed {
   Vec3 at = Vec3::Zero();
 };
 
-/// Sizes and places, the largest first; fewer than asked for when they do not fit.
+/// Sizes and positions, the largest first; fewer than requested when they do not fit.
 std::vector<Placed> place(const Copies& copies, const Ball& ball, const DeckReading& reading) {
   constexpr int tries = 2000;
   Draws draw{static_cast<std::uint64_t>(copies.seed)};
@@ -184,7 +185,7 @@ Node copy_of(const Node& body, std::size_t k, const Placed& placed, const Copies
   return out;
 }
 
-/// The copies of a body, or the body itself where something is wrong with them.
+/// The copies of a body, or the body itself where its `copies` have errors.
 std::vector<Node> expanded(Node body, const std::string& path, DeckReading& reading) {
   const Entry entry = *body.find("copies");
   std::erase_if(body.entries, [](const Entry& e) { return e.key == "copies"; });
@@ -201,10 +202,10 @@ std::vector<Node> expanded(Node body, const std::string& path, DeckReading& read
   if (!good) return {std::move(body)};
   if (const Entry* clamped = body.find("clamped")) {
     reading.error("E030", clamped->place, path, "copies cannot be clamped",
-                  "give clamped bodies one by one");
+                  "write clamped bodies as separate entries");
     return {std::move(body)};
   }
-  // A shape that cannot be read is reported when its turn comes.
+  // A shape that cannot be read is reported when the body is read.
   const Entry* shape = body.find("shape");
   if (!shape) return {std::move(body)};
   std::shared_ptr<const Shape> original;

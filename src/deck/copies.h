@@ -1,5 +1,5 @@
 #pragma once
-// Many bodies from one entry of the deck: copies of it at seeded random places, sizes and turns.
+// Many bodies from one entry of the deck: copies with seeded random positions, sizes and rotations.
 
 #include <memory>
 #include <optional>
@@ -14,17 +14,17 @@ namespace sphgeo {
 struct Copies {
   int count = 1;
   std::shared_ptr<const Shape> region;  ///< the copies lie inside
-  std::vector<double> sizes{1, 1};      ///< least and largest factor on the shape's lengths
+  std::vector<double> sizes{1, 1};      ///< smallest and largest factor on the shape's lengths
   Index seed = 1;
-  std::optional<double> gap;  ///< least distance between copies, m; empty: 2 spacings
-  bool turned = true;         ///< whether each is turned at random
+  std::optional<double> gap;  ///< smallest distance between copies, m; empty: 2 spacings
+  bool turned = true;         ///< whether each is rotated at random
   static Schema<Copies> schema();
 };
 
-/// Replaces every body with `copies` by bodies NAME_1, NAME_2 ..., each with a shape of its own:
-/// turned, scaled and moved inside the region, the largest first, where balls around them keep the
-/// gap. A boulder's seed grows by one from copy to copy. `reading` must know variables, dimension
-/// and resolution.
+/// Replaces every body with `copies` by bodies NAME_1, NAME_2 ..., each with its own shape:
+/// rotated, scaled and moved inside the region, the largest first, such that balls around them keep
+/// the gap. A boulder's seed grows by one from copy to copy. `reading` must know variables,
+/// dimension and resolution.
 void expand_copies(Node& root, DeckReading& reading);
 
 }  // namespace sphgeo

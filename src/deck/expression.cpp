@@ -84,7 +84,7 @@ struct Word {
   int offset;
 };
 
-/// Names of a formula; refuses what muparser would take but a deck must not say.
+/// Names of a formula; refuses what muparser would accept but a deck may not contain.
 std::vector<Word> words_of(const std::string& f) {
   constexpr std::size_t longest = 2000;
   if (f.size() > longest) {
@@ -146,7 +146,8 @@ std::vector<Word> words_of(const std::string& f) {
       const char before = k > 0 ? f[k - 1] : ' ';
       const bool doubled = k + 1 < f.size() && f[k + 1] == '=';
       if (!doubled && before != '=' && before != '<' && before != '>' && before != '!') {
-        throw FormulaError("'=' assigns, which a formula may not", "compare with ==", at);
+        throw FormulaError("'=' is an assignment, which formulas do not have",
+                           "compare with ==", at);
       }
     }
     if (std::string_view("+-*/^()<>=!&|?:, \t").find(c) == std::string_view::npos) {
@@ -190,7 +191,8 @@ std::string check_names(const std::vector<Word>& words, const Variables& variabl
               ? "only variables of the deck are"
               : fmt::format("only variables of the deck and {} are",
                             fmt::join(std::vector<char>(allowed.begin(), allowed.end()), ", "));
-      throw FormulaError(fmt::format("'{}' is not known here", w.text), names, w.offset, w.text);
+      throw FormulaError(fmt::format("'{}' is not available here", w.text), names, w.offset,
+                         w.text);
     }
     std::vector<std::string> known;
     for (const auto& v : variables.values) known.push_back(v.first);
@@ -275,7 +277,7 @@ Expression Expression::parse(const std::string& formula, const Variables& variab
   if (trimmed(formula).empty()) throw FormulaError("the formula is empty", {}, 0);
   const std::vector<Word> words = words_of(formula);
   const std::string used = check_names(words, variables, allowed);
-  // Only the variables it names: a deck may have thousands of both.
+  // Only the variables that it uses: a deck may have thousands of variables and formulas.
   Variables named;
   for (const Word& w : words)
     if (const double* value = variables.find(w.text);
@@ -285,7 +287,7 @@ Expression Expression::parse(const std::string& formula, const Variables& variab
   const double value = (*program)({0.0, 0.0, 0.0, 0.0});  // finds what only muparser can see
   if (used.empty()) {
     if (!std::isfinite(value)) throw FormulaError("the formula has no finite value", {}, 0);
-    // As of a number that is written out: near zero it has lost digits.
+    // As for a plain number: near zero it has lost digits.
     if (value != 0.0 && !std::isnormal(value))
       throw FormulaError("the value of the formula is too small for a number in double precision",
                          {}, 0);

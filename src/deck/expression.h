@@ -11,8 +11,8 @@
 
 namespace sphgeo {
 
-/// The deck's variables in the order of their definition. A value that is NaN stands for a variable
-/// whose own definition failed: whoever uses it says nothing more about it.
+/// The deck's variables in the order of their definition. NaN stands for a variable whose own
+/// definition failed: its uses are not reported again.
 struct Variables {
   std::vector<std::pair<std::string, double>> values;
   const double* find(const std::string& name) const;

@@ -19,7 +19,7 @@ Schema<BoundarySpec> BoundarySpec::common() {
 Schema<ProbeSpec> ProbeSpec::common() {
   Schema<ProbeSpec> s("probe", "Keys of every probe.");
   s.required("name", &ProbeSpec::name, unit::none,
-             "the name of its file and of what expect refers to");
+             "the name of its file, and the name that 'expect' refers to");
   s.optional("every", &ProbeSpec::every, unit::time,
              "interval between samples; auto: end_time / 500")
       .above(0)

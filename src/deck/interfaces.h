@@ -13,7 +13,7 @@ namespace sphgeo {
 template <class P>
 class Schema;
 
-/// A region of space. Dimension-free: in 2D it is asked at y = 0.
+/// A region of space. Dimension-free: in 2D it is evaluated at y = 0.
 struct Shape {
   static constexpr const char* kind = "shape";
   std::string type;  ///< the deck's `type:`
@@ -21,14 +21,14 @@ struct Shape {
   virtual ~Shape() = default;
   /// Distance to the surface (m), negative inside.
   virtual double signed_distance(const Vec3& at) const = 0;
-  /// Right sign, and no more than the distance: enough to ask "inside or outside". Composed shapes
-  /// answer faster than with the distance itself.
+  /// Right sign, and no more than the distance: enough to ask "inside or outside". For composed
+  /// shapes it is faster than the distance itself.
   virtual double bound(const Vec3& at) const { return signed_distance(at); }
   /// Whether bound() may be less than the distance.
   virtual bool composed() const { return false; }
   /// A box around the shape (m); components may be infinite.
   virtual Aabb box() const = 0;
-  /// Reports what is wrong with the geometry itself, such as an open surface.
+  /// Reports defects of the geometry itself, such as an open surface.
   virtual void inspect(CheckContext&) const {}
 };
 

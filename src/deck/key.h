@@ -23,15 +23,15 @@ using Json = nlohmann::ordered_json;
 
 class Key;
 
-/// State of one reading of a deck: what was found, what formulas may use, and the rules to run once
-/// the structure is known to be sound.
+/// State of one reading of a deck: findings, names that formulas may use, and the rules to run once
+/// the structure is correct.
 struct DeckReading {
   DeckReading(Diagnostics& findings, Places& where) : found(findings), places(where) {}
 
   Diagnostics& found;
   Places& places;
   Variables variables;
-  int dimension = 0;        ///< 0 while unknown: points of two or three numbers are both taken
+  int dimension = 0;  ///< 0 while unknown: points of two and of three numbers are both accepted
   double resolution = 0.0;  ///< particle spacing (m), 0 while unknown
   std::string main_file;    ///< name of the main deck in findings
   std::string folder;       ///< of the main deck; paths given by --set count from it too
@@ -62,7 +62,7 @@ class ValueType {
   virtual Node write(const void* value, const WriteStyle& style) const = 0;
   /// JSON Schema of the value; definitions of registries go to `definitions`.
   virtual Json json(const Key& key, Json& definitions) const = 0;
-  /// "a length such as 0.5 m", "a list of points": what the deck should hold here.
+  /// "a length such as 0.5 m", "a list of points": what the deck should contain here.
   virtual std::string words(const Key& key) const = 0;
 };
 
@@ -193,7 +193,7 @@ class SchemaCore {
   const std::string& sentence() const { return sentence_; }
   const std::deque<Key>& keys() const { return keys_; }
   const std::vector<std::function<void(void*, CheckContext&)>>& rules() const { return rules_; }
-  /// Keys that were taken out of the mapping before it is read, and may be meant by a misspelt one.
+  /// Keys that are removed from the mapping before it is read; suggested for misspelt keys.
   const std::vector<std::string>& taken_before() const { return taken_before_; }
 
  protected:

@@ -82,8 +82,8 @@ bool read_mapping(const Node& node, const std::vector<SchemaPart>& parts, const 
     good &= key.type().read(entry.value, key, at, reading, key.member_of(found->object));
   }
 
-  // A misspelt key most likely means one that is not there yet; one that is required is then not
-  // missing as well.
+  // A misspelt key most likely stands for a key that is absent; a required one is then not reported
+  // as missing.
   std::vector<std::string> absent, all;
   for (const DeclaredKey& d : declared) {
     all.push_back(d.key->name());

@@ -7,11 +7,11 @@ namespace sphgeo {
 
 Schema<ClampedRegion> ClampedRegion::schema() {
   Schema<ClampedRegion> s("clamped region",
-                          "A part of a solid body that rests, or moves as prescribed.");
+                          "A part of a solid body that is fixed, or moves as prescribed.");
   s.required("shape", &ClampedRegion::shape, unit::none,
-             "the region; what of the body is inside of it at t = 0 is clamped");
+             "the region; the part of the body inside it at t = 0 is clamped");
   s.optional("motion", &ClampedRegion::motion, unit::none,
-             "prescribed motion; without one the region rests");
+             "prescribed motion; without one the region is fixed");
   return s;
 }
 
@@ -25,7 +25,7 @@ Schema<Body> Body::schema() {
   s.required("material", &Body::material, unit::none, "the name of an entry of 'materials'");
   s.required("shape", &Body::shape, unit::none, "the region it fills");
   s.optional("filling", &Body::filling, unit::none,
-             "lattice: points of a square lattice; relaxed: moved until they fit the surface")
+             "lattice: points of a square (cubic) lattice; relaxed: body-fitted by relaxation")
       .choices({"lattice", "relaxed"});
   s.optional("velocity", &Body::velocity, unit::speed, "initial velocity, formulas of x, y, z")
       .only_of("xyz");
@@ -36,14 +36,14 @@ Schema<Body> Body::schema() {
       .choices({"zero", "hydrostatic", "hydraulic_head"})
       .only_of("xyz");
   s.optional("head", &Body::head, unit::length,
-             "hydraulic head for pressure: hydraulic_head, the z to which the water would rise, a "
+             "hydraulic head for pressure: hydraulic_head, the z of the piezometric level, a "
              "formula of x, y, z")
       .only_of("xyz");
   s.optional("level", &Body::level, unit::length,
              "z of the free surface for hydrostatic pressure; auto: the top of the body");
   s.optional(
        "stress", &Body::stress, unit::none,
-       "initial stress of soil: zero, or geostatic: the weight of what lies above, up to 'level'")
+       "initial stress of soil: zero, or geostatic: by the weight of the soil above, up to 'level'")
       .choices({"zero", "geostatic"});
   s.optional(
        "stress_tensor", &Body::stress_tensor, unit::pressure,
@@ -65,7 +65,7 @@ Schema<Body> Body::schema() {
       .only_of("xyz")
       .equation("Eq. 1");
   s.optional("saturation", &Body::saturation, unit::none,
-             "initial degree of saturation of soil; it matters only with a saturated_cohesion")
+             "initial degree of saturation of soil; used only with a saturated_cohesion")
       .only_of("xyz")
       .equation("Eq. 108");
   s.optional("spacing", &Body::spacing, unit::length,
@@ -74,10 +74,10 @@ Schema<Body> Body::schema() {
       .above(0)
       .equation("section 3.5");
   s.optional("clamped", &Body::clamped, unit::none,
-             "parts of an elastic solid that rest or move as prescribed")
+             "parts of an elastic solid that are fixed or move as prescribed")
       .items(0, 1000);
   s.optional("self_contact", &Body::self_contact, unit::none,
-             "whether an elastic solid may fold so far that it touches itself")
+             "whether parts of an elastic solid may come into contact with each other")
       .equation("Eq. 78");
   s.check([](Body& b, CheckContext& c) {
     if (b.level && b.pressure.word != "hydrostatic" && b.stress != "geostatic") {
@@ -107,7 +107,7 @@ Schema<Numerics> Numerics::schema() {
   Schema<Numerics> s("numerics",
                      "Choices of the numerical method; the defaults are those of the paper.");
   s.optional("pair_precision", &Numerics::pair_precision, unit::none,
-             "arithmetic of pair sums: single is faster, the state is double in both")
+             "arithmetic of pair sums: single is faster; the state is double in both cases")
       .choices({"single", "double"});
   s.optional("pair_geometry", &Numerics::pair_geometry, unit::none,
              "positions used in pair sums: frozen as in Algorithm 2, or current")
@@ -120,18 +120,19 @@ Schema<Numerics> Numerics::schema() {
              "advection step as a fraction of h / |v|max")
       .above(0)
       .at_most(1);
-  s.optional(
-       "time_step_factor", &Numerics::time_step_factor, unit::none,
-       "factor on all time steps, of every phase: what a result owes to the steps shows at 0.5")
+  s.optional("time_step_factor", &Numerics::time_step_factor, unit::none,
+             "factor on all time steps of all phases; 0.5 shows the influence of the time step on "
+             "a result")
       .above(0)
       .at_most(1);
-  s.optional("lattice_jitter", &Numerics::lattice_jitter, unit::none,
-             "largest random move of each coordinate of a particle from its lattice point at t = "
-             "0, in spacings; bodies of water that "
-             "the pores of soil touch are relaxed and not moved")
+  s.optional(
+       "lattice_jitter", &Numerics::lattice_jitter, unit::none,
+       "largest random displacement of each coordinate of a particle from its lattice point at t = "
+       "0, in spacings; bodies of water in contact with pore water are relaxed and not jittered")
       .at_least(0)
       .at_most(0.4);
-  s.optional("lattice_seed", &Numerics::lattice_seed, unit::none, "another seed, another jitter")
+  s.optional("lattice_seed", &Numerics::lattice_seed, unit::none,
+             "another seed gives another jitter")
       .at_least(0);
   s.optional("advection_ratio_max", &Numerics::advection_ratio_max, unit::none,
              "largest advection step, in acoustic steps of a fluid at rest")
@@ -159,27 +160,29 @@ Schema<Numerics> Numerics::schema() {
       .choices({"equal_mass", "variable_mass", "constant_volume"})
       .equation("Eq. 27");
   s.optional("water_fraction_floor", &Numerics::water_fraction_floor, unit::none,
-             "least share of the volume that is left to water where soil is dense; particles that "
-             "meet it are counted")
+             "lower bound of the water volume fraction where soil is dense; particles at the bound "
+             "are counted")
       .above(0)
       .below(1)
       .equation("Eq. 56");
   s.optional("transport_target_volume", &Numerics::transport_target_volume, unit::none,
-             "whether the shift of water in soil keeps the spacing that the porosity asks for")
+             "whether the transport-velocity correction of water in soil aims at the spacing that "
+             "follows from the porosity")
       .equation("Eq. 88");
   s.optional("transport_projection", &Numerics::transport_projection, unit::none,
-             "whether the shift leaves out its part along a steep gradient of porosity")
+             "whether the transport-velocity correction omits its component along a steep gradient "
+             "of porosity")
       .equation("Eq. 89");
   s.optional(
        "transport_projection_threshold", &Numerics::transport_projection_threshold, unit::none,
-       "gradient of the water fraction, per smoothing length, from which on the projection acts")
+       "gradient of the water fraction, per smoothing length, above which the projection acts")
       .above(0)
       .equation("Eq. 89");
   s.optional("transport_velocity", &Numerics::transport_velocity, unit::none,
-             "whether inner particles are shifted to an even spacing");
+             "whether the transport-velocity correction acts on inner particles");
   s.optional("transport_at_surface", &Numerics::transport_at_surface, unit::none,
-             "what is left of the shift where the kernel reaches the free surface: nothing, or its "
-             "part along the surface")
+             "transport-velocity correction where the kernel support reaches the free surface: "
+             "none, or its tangential component")
       .choices({"none", "tangential"})
       .equation("Eq. 87");
   s.optional("h_factor_water", &Numerics::h_factor_water, unit::none,
@@ -195,10 +198,9 @@ Schema<Numerics> Numerics::schema() {
        "factor of the low-dissipation limiter of soil's Riemann flux; auto: 20 times the dimension")
       .at_least(0)
       .equation("Eq. 54");
-  s.optional(
-       "soil_pair_geometry", &Numerics::soil_pair_geometry, unit::none,
-       "positions used in pair sums of soil within an advection step; frozen ones let a turning "
-       "body shrink, which a stress that follows from rates never forgets")
+  s.optional("soil_pair_geometry", &Numerics::soil_pair_geometry, unit::none,
+             "positions used in pair sums of soil within an advection step; with frozen ones a "
+             "rotating body shrinks, and the rate form of the stress keeps the error")
       .choices({"frozen", "current"});
   s.optional("soil_velocity_gradient", &Numerics::soil_velocity_gradient, unit::none,
              "corrected: exact for linear velocities also at surfaces; plain: the bare sum")
@@ -210,10 +212,9 @@ Schema<Numerics> Numerics::schema() {
              "step; none: "
              "never")
       .choices({"summation", "none"});
-  s.optional(
-       "transport_velocity_soil", &Numerics::transport_velocity_soil, unit::none,
-       "whether inner soil particles are shifted to an even spacing: for cohesive soil, against "
-       "tensile instability")
+  s.optional("transport_velocity_soil", &Numerics::transport_velocity_soil, unit::none,
+             "whether the transport-velocity correction acts on inner soil particles: for cohesive "
+             "soil, against tensile instability")
       .equation("Eq. 87");
   s.optional("h_factor_solid", &Numerics::h_factor_solid, unit::none,
              "smoothing length of solids over their particle spacing; auto: 1.15")
@@ -221,23 +222,23 @@ Schema<Numerics> Numerics::schema() {
       .at_most(3)
       .equation("below Eq. 102");
   s.optional("solid_gradient", &Numerics::solid_gradient, unit::none,
-             "fields whose gradient solids see exactly: linear, as Eq. 66 has it, or quadratic "
-             "also near surfaces, which bends plates of few layers as stiffly as thick ones")
+             "fields whose gradient is exact: linear, as in Eq. 66, or quadratic also near "
+             "surfaces, which gives plates of few layers their bending stiffness")
       .choices({"linear", "quadratic"})
       .equation("Eq. 66");
   s.optional("cfl_solid", &Numerics::cfl_solid, unit::none, "CFL number of the time step of solids")
       .above(0)
       .at_most(1)
       .equation("Eq. 94");
-  s.optional(
-       "max_lost_fraction", &Numerics::max_lost_fraction, unit::none,
-       "the run stops when more than this fraction of a set has left the domain or sits inside a "
-       "wall")
+  s.optional("max_lost_fraction", &Numerics::max_lost_fraction, unit::none,
+             "the run stops when more than this fraction of a set has left the domain or lies "
+             "inside a wall")
       .at_least(0)
       .at_most(1)
       .changeable_on_resume();
   s.optional("density_bound", &Numerics::density_bound, unit::none,
-             "the run stops when a density departs from that at rest by more than this fraction")
+             "the run stops when a density deviates from the reference density by more than this "
+             "fraction")
       .above(0)
       .at_most(0.95)
       .changeable_on_resume();
@@ -261,23 +262,23 @@ Schema<Numerics> Numerics::schema() {
 }
 
 Schema<Relaxation> Relaxation::schema() {
-  Schema<Relaxation> s("relaxation", "How water is distributed that starts in the pores of soil.");
+  Schema<Relaxation> s("relaxation", "Initial distribution of pore water.");
   s.optional("steps", &Relaxation::steps, unit::none, "relaxation steps, at most")
       .at_least(0)
       .at_most(100000)
       .equation("Eq. 85");
   s.optional("seed", &Relaxation::seed, unit::none,
-             "of the draws that accept candidates: another seed, another start")
+             "of the random draws that accept candidates: another seed gives another initial "
+             "distribution")
       .at_least(0);
-  s.optional(
-       "tolerance", &Relaxation::tolerance, unit::none,
-       "mean movement of a step, over the target spacing, below which the relaxation ends early")
+  s.optional("tolerance", &Relaxation::tolerance, unit::none,
+             "mean displacement of a step, over the target spacing, below which the relaxation "
+             "ends early")
       .at_least(0)
       .below(0.1);
-  s.optional(
-       "acceptance", &Relaxation::acceptance, unit::none,
-       "stratified: every part of the pores gets its own share of particles; independent: each "
-       "candidate by its own draw, and only the total is right")
+  s.optional("acceptance", &Relaxation::acceptance, unit::none,
+             "stratified: every part of the pores gets its share of particles; independent: each "
+             "candidate is drawn by itself, and only the total is exact")
       .choices({"stratified", "independent"});
   s.optional(
        "file", &Relaxation::file, unit::none,
@@ -304,14 +305,15 @@ Schema<Output> Output::schema() {
              "interval between rows of run.csv; auto: end_time / 200")
       .above(0);
   s.optional("checkpoint_every", &Output::checkpoint_every, unit::time,
-             "wall time between checkpoints, at least; never so short that they take 2 % of a run")
+             "smallest wall time between checkpoints; it is longer where they would take more than "
+             "2 % of a run")
       .at_least(0);
   return s;
 }
 
 namespace {
 
-/// A table that cannot be used is found now, and not when the run has ended.
+/// An unusable table is reported before the run, not after it.
 void check_reference(const Expect& e, CheckContext& c) {
   try {
     const CsvTable table = read_csv_table(e.reference_csv->path);
@@ -342,14 +344,14 @@ Schema<Expect> Expect::schema() {
   s.optional("shift", &Expect::shift, unit::none,
              "added to the measured numbers, before the scale");
   s.optional("scale", &Expect::scale, unit::none, "the measured numbers are divided by it");
-  s.optional("reference", &Expect::reference, unit::none, "the number that should come out");
+  s.optional("reference", &Expect::reference, unit::none, "the expected number");
   s.optional("reference_csv", &Expect::reference_csv, unit::none,
              "table of the reference curve, for reduce: curve");
   s.optional("x", &Expect::x, unit::none, "abscissa column of the table; auto: the first");
   s.optional("y", &Expect::y, unit::none, "ordinate column of the table; auto: the second");
   s.optional("x_scale", &Expect::x_scale, unit::none, "the table's abscissae are multiplied by it");
   s.optional("x_shift", &Expect::x_shift, unit::none,
-             "added to the scaled abscissae, for a table whose clock started at another moment");
+             "added to the scaled abscissae, for a table with another origin of time");
   s.optional("y_scale", &Expect::y_scale, unit::none, "the table's ordinates are multiplied by it");
   s.optional("norm", &Expect::norm, unit::none,
              "of the difference of two curves: l2 and max by the range of the reference, "
@@ -386,7 +388,7 @@ Schema<Expect> Expect::schema() {
     if (e.measure == "within" && e.tolerance < 0.0)
       c.error("tolerance", "'tolerance' must not be negative");
     if (e.measure == "within" && !curve && e.tolerance_kind == "relative" && e.reference == 0.0) {
-      c.error("reference", "a relative tolerance of 0 means nothing",
+      c.error("reference", "a relative tolerance needs a reference other than 0",
               "set tolerance_kind: absolute");
     }
     if (e.from && e.to && *e.from >= *e.to) c.error("to", "'to' must be later than 'from'");

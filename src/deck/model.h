@@ -20,7 +20,7 @@ namespace sphgeo {
 /// A part of a solid body that does not move freely.
 struct ClampedRegion {
   std::shared_ptr<const Shape> shape;  ///< the part of the body inside of it, at t = 0
-  std::optional<Motion> motion;        ///< empty: it rests
+  std::optional<Motion> motion;        ///< empty: it is fixed
   static Schema<ClampedRegion> schema();
 };
 
@@ -33,7 +33,7 @@ struct Body {
   std::array<Expression, 3> velocity;  ///< initial, m/s
   WordOrExpression pressure{"zero",
                             {}};  ///< initial: zero | hydrostatic | hydraulic_head | a formula (Pa)
-  std::optional<Expression> head;  ///< z to which the water would rise, for hydraulic_head, m
+  std::optional<Expression> head;  ///< piezometric level, for hydraulic_head, m
   std::optional<double> level;     ///< z of the free surface for hydrostatic; empty: the body's top
   std::string stress = "zero";     ///< of soil, initial: zero | geostatic
   std::optional<std::vector<Expression>>
@@ -44,7 +44,7 @@ struct Body {
   Expression saturation;                       ///< of soil, initial degree of saturation
   std::optional<double> spacing;               ///< of a solid, m; empty: the deck's resolution
   std::vector<ClampedRegion> clamped;          ///< of an elastic solid
-  bool self_contact = false;                   ///< of an elastic solid that may fold onto itself
+  bool self_contact = false;                   ///< contact of an elastic solid with itself
   static Schema<Body> schema();
 };
 
@@ -55,7 +55,7 @@ struct Numerics {
   double cfl_acoustic = 0.4;
   double cfl_advection = 0.2;
   double time_step_factor = 1;  ///< on all time steps
-  double lattice_jitter = 0;    ///< of particles at t = 0, in spacings
+  double lattice_jitter = 0;    ///< of particle positions at t = 0, in spacings
   Index lattice_seed = 1;
   double advection_ratio_max = 5.5;
   double limiter = 3.0;                                ///< Eq. 63, water
@@ -90,14 +90,15 @@ struct Numerics {
   static Schema<Numerics> schema();
 };
 
-/// What `expect` calls the history of the relaxation; no probe may bear the name.
+/// The name by which `expect` refers to the history of the relaxation; no probe may have it.
 inline constexpr const char* relaxation_probe = "relaxation";
 
-/// How water is distributed that starts in the pores of soil (section 3.3).
+/// Initial distribution of pore water (section 3.3).
 struct Relaxation {
   int steps = 100;
   Index seed = 1;
-  double tolerance = 0;  ///< mean movement of a step, over the target spacing, that ends it early
+  double tolerance =
+      0;  ///< mean displacement of a step, over the target spacing, that ends it early
   std::string acceptance = "stratified";  ///< stratified | independent draws of the candidates
   std::optional<FilePath> file;           ///< a stored result
   static Schema<Relaxation> schema();

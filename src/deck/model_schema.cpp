@@ -32,7 +32,7 @@ void collect(std::vector<Named>& out, const char* section, const List& list, Nam
   }
 }
 
-/// Names become parts of file names and key paths, and must tell things apart.
+/// Names become parts of file names and key paths, and must be unique.
 void check_names(const std::vector<Named>& named, const std::string& what, CheckContext& c) {
   const auto fits = [](char l) {
     return (l >= 'a' && l <= 'z') || (l >= 'A' && l <= 'Z') || (l >= '0' && l <= '9') || l == '_' ||
@@ -62,7 +62,7 @@ void check_references(const Model& m, CheckContext& c) {
     if (m.probes[k]->name == relaxation_probe)
       c.error(fmt::format("probes[{}].name", k),
               fmt::format("a probe cannot be called '{}'", relaxation_probe),
-              "that is what 'expect' calls the history of the relaxation", "E024");
+              "'expect' uses this name for the history of the relaxation", "E024");
   }
   for (std::size_t k = 0; k < m.bodies.size(); ++k) {
     if (m.material(m.bodies[k].material) != nullptr) continue;
@@ -99,7 +99,7 @@ void check_all(Model& m, CheckContext& c) {
 }  // namespace
 
 Schema<Model> Model::schema() {
-  Schema<Model> s("deck", "A scene, what to measure in it, and what should come out.");
+  Schema<Model> s("deck", "A scene, its probes, and its expected results.");
   s.optional("title", &Model::title, unit::none, "what the deck shows").changeable_on_resume();
   s.required("dimension", &Model::dimension, unit::none, "2 (the x-z plane) or 3")
       .at_least(2)
@@ -127,10 +127,9 @@ Schema<Model> Model::schema() {
   s.optional("output", &Model::output, unit::none, "frames and tables").changeable_on_resume();
   s.optional("numerics", &Model::numerics, unit::none, "choices of the numerical method");
   s.optional("without", &Model::without, unit::none,
-             "effects that are switched off, to see what they do; 'sphgeo show EFFECT' tells which "
-             "can be");
-  s.optional("relaxation", &Model::relaxation, unit::none,
-             "how water is distributed that starts in the pores of soil");
+             "effects that are switched off, to study their influence; 'sphgeo show EFFECT' states "
+             "whether it can be");
+  s.optional("relaxation", &Model::relaxation, unit::none, "initial distribution of pore water");
   s.optional("expect", &Model::expect, unit::none, "results the deck claims")
       .items(0, 10000)
       .changeable_on_resume();
@@ -216,7 +215,7 @@ Json json_schema() {
   Json definitions = Json::object();
   Model defaults;
   json_mapping(out, {{&schema_of<Model>(), &defaults}}, definitions);
-  // `copies` and `around` are taken in before bodies are read, and no keys of theirs.
+  // `copies` and `around` are expanded before bodies are read, and are not among their keys.
   Copies copies;
   Json& many = out["properties"]["bodies"]["items"]["properties"]["copies"];
   json_mapping(many, {{&schema_of<Copies>(), &copies}}, definitions);

@@ -10,8 +10,8 @@
 namespace sphgeo {
 namespace {
 
-// Small against any motion an engineer prescribes, large enough that the second difference of a
-// smooth formula keeps eight digits.
+// Small against any prescribed motion, large enough that the second difference of a smooth formula
+// keeps eight digits.
 constexpr double difference_step = 1e-4;
 
 // Cubic Hermite interpolation with finite-difference slopes: a table then has a continuous
@@ -42,9 +42,9 @@ Schema<Motion> Motion::schema() {
   s.optional("table", &Motion::table, unit::none,
              "CSV file with a column t and any of x, y, z, angle (SI), added to the formulas");
   s.optional("waves", &Motion::waves, unit::none,
-             "a piston that makes waves, from its start on; added to the formulas");
-  s.optional("from", &Motion::from, unit::time, "it rests before this time");
-  s.optional("until", &Motion::until, unit::time, "it rests after this time");
+             "waves by a piston, from the start of the motion on; added to the formulas");
+  s.optional("from", &Motion::from, unit::time, "at rest before this time");
+  s.optional("until", &Motion::until, unit::time, "at rest after this time");
   s.check([](Motion& m, CheckContext& c) {
     m.axis = direction_of(m.axis);
     if (m.axis.isZero(0))

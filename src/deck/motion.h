@@ -20,7 +20,7 @@ struct Motion {
   std::optional<FilePath>
       table;  ///< CSV with columns t and any of x, y, z, angle; added to the formulas
   std::optional<Waves> waves;   ///< of a wave maker; added to the formulas
-  double from = 0.0;            ///< it rests before, s
+  double from = 0.0;            ///< at rest before, s
   std::optional<double> until;  ///< and after, s
 
   static Schema<Motion> schema();
@@ -30,9 +30,9 @@ struct Motion {
     Vec3 shift;
     double angle;
   };
-  /// The motion over a time step: place and direction at its end, velocity and acceleration at its
-  /// middle, as the four functions below give them. For many points at once: formulas, tables and
-  /// waves are asked once.
+  /// The motion over a time step: position and direction at its end, velocity and acceleration at
+  /// its middle, as the four functions below give them. For many points at once: formulas, tables
+  /// and waves are evaluated once.
   class Moment {
    public:
     Moment(const Motion& motion, double middle, double end);

@@ -25,7 +25,7 @@ std::vector<std::string> top_level_keys() {
 }
 
 /// Reads one top-level number ahead of the rest, silently: points depend on the dimension, and
-/// rules may ask for the spacing. Its errors are reported when its turn comes.
+/// rules may ask for the spacing. Its errors are reported when the whole deck is read.
 double number_ahead(const Node& root, const std::string& name, const DeckReading& reading) {
   const Entry* entry = root.find(name);
   if (entry == nullptr) return 0.0;

@@ -1,5 +1,5 @@
 #pragma once
-// Self-registration: one file per shape, material, boundary or probe, and nothing else touched.
+// Self-registration: one file per shape, material, boundary or probe, without changes elsewhere.
 //
 //   struct Box final : Shape { Vec3 min, max; static Schema<Box> schema(); ... };
 //   static const Register<Shape, Box> registered_box{"box"};           // in box.cpp

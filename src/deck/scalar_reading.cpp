@@ -112,7 +112,7 @@ bool looks_like_no_text(const std::string& text) {
 bool formula_failed(const FormulaError& e, const Node& node, const std::string& path,
                     DeckReading& reading) {
   if (!e.unknown_name.empty()) {
-    // A variable that failed, or is unknown, is one mistake however often it is used.
+    // A failed or unknown variable is reported once, however often it is used.
     const double* value = reading.variables.find(e.unknown_name);
     if (value != nullptr && std::isnan(*value)) return false;
     if (value == nullptr && reading.variables_unreadable) return false;

@@ -99,7 +99,7 @@ struct TextType final : ValueType {
   }
 };
 
-/// The y component plays no part in a 2D scene.
+/// The y component is not used in a 2D scene.
 bool ignores_y(const DeckReading& reading, const Key& key) {
   return reading.dimension == 2 && !key.keeps_y();
 }

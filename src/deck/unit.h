@@ -65,7 +65,7 @@ std::optional<UnitText> parse_unit(std::string_view text);
 /// The dimension in words, "a length", "a pressure"; "a value in X" for rarer ones.
 std::string dimension_words(const Unit& u);
 
-/// A number of the deck: what it is, or why it is none.
+/// A number of the deck, or the reason why the text is not a number.
 struct NumberText {
   enum class Status { number, not_a_number, refused };
   Status status = Status::not_a_number;

@@ -11,29 +11,31 @@
 namespace sphgeo {
 
 Schema<Waves> Waves::schema() {
-  Schema<Waves> s("waves", "Regular waves by a piston, from height, period and depth.");
-  s.required("height", &Waves::height, unit::length, "from trough to crest").above(0);
-  s.required("period", &Waves::period, unit::time, "of the waves").above(0);
-  s.required("depth", &Waves::depth, unit::length, "of the water at rest").above(0);
-  s.optional("gravity", &Waves::gravity, unit::acceleration, "that the waves run under").above(0);
-  s.optional("direction", &Waves::direction, unit::none, "that the waves run in, of any length");
+  Schema<Waves> s("waves", "Regular waves by a piston, given by height, period and depth.");
+  s.required("height", &Waves::height, unit::length, "wave height, from trough to crest").above(0);
+  s.required("period", &Waves::period, unit::time, "wave period").above(0);
+  s.required("depth", &Waves::depth, unit::length, "still-water depth").above(0);
+  s.optional("gravity", &Waves::gravity, unit::acceleration, "gravity of the wave theory").above(0);
+  s.optional("direction", &Waves::direction, unit::none,
+             "direction of wave propagation, of any length");
   s.optional("order", &Waves::order, unit::none,
-             "of the theory: 1 linear, for low waves; 2 adds what a higher wave needs to keep its "
-             "shape (Madsen 1971)")
+             "order of the wave maker theory: 1 linear; 2 second order, for waves of finite height "
+             "(Madsen 1971)")
       .at_least(1)
       .at_most(2);
   s.optional("ramp", &Waves::ramp, unit::time,
-             "time in which the stroke grows from zero; auto: two periods")
+             "duration of the ramp of the stroke; auto: two periods")
       .at_least(0);
   s.optional("absorb", &Waves::absorb, unit::none,
-             "whether the piston moves so that it takes up waves that come back to it, by the "
-             "level of the water before it");
+             "active wave absorption: the piston absorbs reflected waves, from the water level in "
+             "front of it");
   s.check([](Waves& w, CheckContext& c) {
     w.direction = direction_of(w.direction);
     if (w.direction.isZero(0))
       return c.error("direction", "the direction has no length", "give a vector that is not zero");
     if (w.absorb && std::abs(w.direction.z()) > 1e-9)
-      c.error("direction", "waves that are to be taken up must run level", "a direction without z");
+      c.error("direction", "active wave absorption needs a horizontal direction of propagation",
+              "a direction without z");
     if (w.height >= 0.78 * w.depth)
       c.error("height",
               fmt::format("waves break before they are as high as 0.78 of the depth, here {:.4g} m",
@@ -46,7 +48,7 @@ Schema<Waves> Waves::schema() {
                           "this one is {:.3g}",
                           steepness),
               "a lower or a longer wave");
-    // With more than this the wave of second order has a second crest in its trough.
+    // Above this bound the second-order wave has a secondary crest in its trough.
     const double length = 2 * std::numbers::pi / w.wave_number(),
                  ursell = w.height * length * length / std::pow(w.depth, 3);
     const double highest = 8 * std::numbers::pi * std::numbers::pi / 3;
@@ -63,8 +65,7 @@ double Waves::omega() const { return 2 * std::numbers::pi / period; }
 
 double Waves::wave_number() const {
   const double deep = omega() * omega() * depth / gravity;
-  // x tanh x = deep: from Eckart's guess by Newton's steps, which converge from there for any
-  // depth.
+  // x tanh x = deep: Newton's method from Eckart's approximation, which converges for any depth.
   double x = deep / std::sqrt(std::tanh(deep));
   for (int k = 0; k < 50; ++k) {
     const double t = std::tanh(x), next = x - (x * t - deep) / (t + x * (1 - t * t));
@@ -95,7 +96,7 @@ double Waves::share(double t) const {
 
 Vec3 Waves::displacement(double t) const {
   const double part = share(t), phase = omega() * t;
-  // What is of second order grows with the square of the height.
+  // The second-order part grows with the square of the height.
   return (0.5 * stroke() * part * std::sin(phase) +
           second_amplitude() * part * part * std::sin(2 * phase)) *
          direction;
@@ -106,7 +107,7 @@ double Waves::elevation(double distance, double t) const {
   double eta =
       0.5 * height * part * std::cos(phase) + evanescent(distance) * displacement(t).dot(direction);
   if (order >= 2) {
-    // Stokes' second crest. Beyond kd = 20 its factor is 2 to all digits, and the functions
+    // Stokes' second-order crest. Beyond kd = 20 its factor is 2 to all digits, and the functions
     // overflow.
     const double x = std::min(k * depth, 20.0), s = std::sinh(x);
     eta += k * height * height / 16 * std::cosh(x) * (2 + std::cosh(2 * x)) / (s * s * s) * part *

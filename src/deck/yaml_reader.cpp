@@ -25,7 +25,7 @@ namespace sphgeo {
 
 namespace {
 
-/// Bytes that are no part of any text. Written as they are, a terminal would obey some of them.
+/// Control characters. Written unchanged, a terminal would interpret some of them.
 bool is_control(char c) {
   const auto byte = static_cast<unsigned char>(c);
   return (byte < 0x20 && c != '\t' && c != '\r' && c != '\n') || byte == 0x7f;
@@ -34,7 +34,7 @@ bool is_control(char c) {
 /// Ends the reading after an error that was already reported.
 struct Stop {};
 
-/// What a value weighs, the values in it included.
+/// Size of a value, with the values in it.
 struct Weight {
   int nodes = 0;
   std::size_t bytes = 0;
@@ -58,7 +58,7 @@ Weight weight_of(const Node& node) {
 }
 
 /// Builds the tree from the parser's events, which show keys and aliases with their own marks; the
-/// library's own tree has lost both.
+/// library's own tree has neither.
 class Builder final : public YAML::EventHandler {
  public:
   Builder(std::string name, Diagnostics& found, const YamlLimits& limits)
@@ -104,15 +104,15 @@ class Builder final : public YAML::EventHandler {
     if (const auto control = std::find_if(value.begin(), value.end(), is_control);
         control != value.end()) {
       found_.error("E002", node.place, {},
-                   fmt::format("not a text: it holds the byte {}",
+                   fmt::format("not a text: it contains the byte {}",
                                static_cast<int>(static_cast<unsigned char>(*control))),
-                   "leave the control character out");
+                   "remove the control character");
       throw Stop{};
     }
     // The library turns `\N` and `\_` into single bytes.
     if (const std::size_t at = invalid_utf8(value); at != std::string::npos) {
       found_.error("E002", node.place, {},
-                   fmt::format("not a text: it holds the byte 0x{:02X}, which is no UTF-8",
+                   fmt::format("not a text: it contains the byte 0x{:02X}, which is not UTF-8",
                                static_cast<unsigned char>(value[at])),
                    "write \\u0085 in place of \\N and \\u00a0 in place of \\_");
       throw Stop{};
@@ -151,7 +151,7 @@ class Builder final : public YAML::EventHandler {
   void refuse_tag(const std::string& tag, const Place& at) {
     if (tag.empty() || tag == "?" || tag == "!") return;
     found_.error("E004", at, {}, fmt::format("the tag '{}' is not supported", tag),
-                 "leave the tag out");
+                 "remove the tag");
   }
 
   void count(int nodes, std::size_t bytes, const Place& at) {
@@ -161,7 +161,7 @@ class Builder final : public YAML::EventHandler {
     found_.error("E006", at, {},
                  nodes_ > limits_.nodes
                      ? fmt::format("the deck has more than {} values", limits_.nodes)
-                     : fmt::format("the deck holds more than {} bytes of text", limits_.bytes),
+                     : fmt::format("the deck has more than {} bytes of text", limits_.bytes),
                  "put large tables into a CSV file");
     throw Stop{};
   }
@@ -269,13 +269,13 @@ bool is_no_text(std::string_view text, const std::string& name, Diagnostics& fou
   if (control != text.end()) {
     const auto at = static_cast<std::size_t>(control - text.begin());
     found.error("E002", place_of_byte(text, at, name), {},
-                fmt::format("not a text file: it holds the byte {}",
+                fmt::format("not a text file: it contains the byte {}",
                             static_cast<int>(static_cast<unsigned char>(*control))));
     return true;
   }
   if (const std::size_t at = invalid_utf8(text); at != std::string_view::npos) {
     found.error("E002", place_of_byte(text, at, name), {},
-                fmt::format("the file is not UTF-8: it holds the byte 0x{:02X} here",
+                fmt::format("the file is not UTF-8: it contains the byte 0x{:02X} here",
                             static_cast<unsigned char>(text[at])),
                 "save it as UTF-8");
     return true;
@@ -283,7 +283,7 @@ bool is_no_text(std::string_view text, const std::string& name, Diagnostics& fou
   return false;
 }
 
-/// What would take the library much memory before the builder can count its values.
+/// Input for which the library needs much memory before the builder can count its values.
 bool is_too_dense(std::string_view text, const std::string& name, const YamlLimits& limits,
                   Diagnostics& found) {
   std::size_t punctuation = 0;
@@ -301,10 +301,10 @@ bool is_too_dense(std::string_view text, const std::string& name, const YamlLimi
       if (std::string_view("[]{},").find(text[k]) == std::string_view::npos ||
           ++punctuation <= limits.punctuation)
         continue;
-      found.error("E006", {name, line, static_cast<int>(k - start) + 1}, {},
-                  fmt::format("the deck holds more than {} brackets, braces and commas",
-                              limits.punctuation),
-                  "put large tables into a CSV file");
+      found.error(
+          "E006", {name, line, static_cast<int>(k - start) + 1}, {},
+          fmt::format("the deck has more than {} brackets, braces and commas", limits.punctuation),
+          "put large tables into a CSV file");
       return true;
     }
     start = end + 1;
@@ -332,7 +332,7 @@ std::optional<Node> read_yaml(const std::string& text, const std::string& name, 
     if (root.place.file.empty()) root.place = {name, 1, 1};
     Builder second(name, found, limits);
     if (parser.HandleNextDocument(second)) {
-      found.error("E005", second.take().place, {}, "the deck holds a second document",
+      found.error("E005", second.take().place, {}, "the deck has a second document",
                   "keep one document per file; combine files with 'include'");
     }
     return root;
@@ -369,7 +369,7 @@ std::optional<std::string> read_text_file(const std::string& path, const Place& 
     why = "it is a folder";
   } else if (only_regular && std::filesystem::exists(status) &&
              !std::filesystem::is_regular_file(status)) {
-    why = "it is no regular file";
+    why = "it is not a regular file";
   } else {
     errno = 0;
     std::ifstream in(path, std::ios::binary);

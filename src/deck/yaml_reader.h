@@ -1,5 +1,5 @@
 #pragma once
-// Strict YAML: what the library lets pass silently is refused here, with its place.
+// Strict YAML: what the library accepts silently is refused here, with its place.
 
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@ namespace sphgeo {
 struct YamlLimits {
   std::size_t bytes = 10u << 20;  ///< of the file, and of all texts once aliases are replaced
   std::size_t line =
-      256u << 10;  ///< of one line: the library takes it apart before it hands out its first value
+      256u << 10;  ///< of one line: the library parses it before it returns its first value
   /// Brackets, braces and commas: likewise, up to the end of the outermost bracket, some 260 bytes
   /// for each.
   std::size_t punctuation = 600000;

@@ -10,7 +10,7 @@
 namespace sphgeo {
 namespace {
 
-/// A stone: a ball (in 2D a disc) with smooth seeded bumps. The surface is r = radius (1 +
+/// A boulder: a ball (in 2D a disc) with smooth seeded bumps. The surface is r = radius (1 +
 /// bumps(direction)).
 struct Boulder final : SceneShape {
   Vec3 center = Vec3::Zero();
@@ -22,15 +22,15 @@ struct Boulder final : SceneShape {
 
   static Schema<Boulder> schema() {
     Schema<Boulder> s("boulder",
-                      "A stone: a ball, in 2D a disc, whose radius varies smoothly and at random "
-                      "from direction to direction.");
-    s.required("center", &Boulder::center, unit::length, "The middle.");
+                      "A boulder: a ball, in 2D a disc, whose radius varies smoothly and randomly "
+                      "with direction.");
+    s.required("center", &Boulder::center, unit::length, "The center.");
     s.required("radius", &Boulder::radius, unit::length, "The mean radius.").above(0);
     s.optional("roughness", &Boulder::roughness, unit::none,
-               "Largest deviation of the radius, as a part of it.")
+               "Largest deviation of the radius, as a fraction of it.")
         .at_least(0)
         .at_most(0.4);
-    s.optional("seed", &Boulder::seed, unit::none, "Another seed, another stone.").at_least(0);
+    s.optional("seed", &Boulder::seed, unit::none, "Another seed gives another shape.").at_least(0);
     s.check([](Boulder& b, CheckContext& c) {
       set_scene(b, c);
       b.prepare();
@@ -38,8 +38,8 @@ struct Boulder final : SceneShape {
     return s;
   }
 
-  /// Plane waves of 1.5 to 3 periods around, cut at y = 0 in 2D; their amplitudes add up to
-  /// `roughness` at most.
+  /// Plane waves of 1.5 to 3 periods around the ball, cut at y = 0 in 2D; their amplitudes add up
+  /// to `roughness` at most.
   void prepare() {
     std::uint64_t draw = 0;
     const auto uniform = [&] { return random_uniform(static_cast<std::uint64_t>(seed), draw++); };
@@ -54,14 +54,14 @@ struct Boulder final : SceneShape {
       w.amplitude = 1 / number;
       sum += w.amplitude;
     }
-    // Waves out of step never add up to the sum: about its square root, times the largest of a few
-    // directions.
+    // Waves with random phases do not add up to the sum of amplitudes: about its square root, times
+    // the largest of a few directions.
     for (Wave& w : waves_) w.amplitude *= 2.5 * roughness / sum;
   }
 
   /// Radius less that of the surface, over the length of its gradient: exact to first order at the
   /// surface, where the slope of the bumps tilts it. The slope is that at the surface, also for
-  /// points near the middle.
+  /// points near the center.
   double signed_distance(const Vec3& at) const override {
     Vec3 d = at - center;
     if (flat) d.y() = 0;

@@ -4,7 +4,7 @@ namespace sphgeo {
 
 bool on_inner_seam(const Shape& shape, const Vec3& at, double reach, bool flat) {
   if (!shape.composed()) return false;
-  // Beside a seam the solid goes on in every direction; along it the bound stays zero.
+  // Beside a seam the solid continues in every direction; along it the bound stays zero.
   double most = -std::numeric_limits<double>::infinity(), least = -most;
   for (int k = 0; k < 6; ++k) {
     if (flat && k % 3 == 1) continue;

@@ -21,7 +21,7 @@ class BoxTree {
   };
 
   BoxTree() = default;
-  /// `pieces[i]` bounds piece i. The tree does not depend on anything but their order and values.
+  /// `pieces[i]` bounds piece i. The tree depends only on their order and values.
   explicit BoxTree(const std::vector<Aabb>& pieces);
 
   bool empty() const { return nodes_.empty(); }
@@ -46,7 +46,7 @@ class BoxTree {
       }
       const double l = squared_distance(p, nodes_[static_cast<std::size_t>(node.first)].box);
       const double r = squared_distance(p, nodes_[static_cast<std::size_t>(node.right)].box);
-      stack[depth++] = l < r ? node.right : node.first;  // the nearer one is looked at first
+      stack[depth++] = l < r ? node.right : node.first;  // the nearer one is visited first
       stack[depth++] = l < r ? node.first : node.right;
     }
     return best2;

@@ -8,7 +8,8 @@ const Register<Shape, Capsule> registered_capsule{"capsule"};
 }
 
 Schema<Capsule> Capsule::schema() {
-  Schema<Capsule> s("capsule", "A cylinder with round ends: all points near a segment.");
+  Schema<Capsule> s("capsule",
+                    "A cylinder with round ends: all points within a distance of a segment.");
   s.required("from", &Capsule::from, unit::length, "One end of the segment.");
   s.required("to", &Capsule::to, unit::length, "The other end of the segment.");
   s.required("radius", &Capsule::radius, unit::length, "Greatest distance from the segment.")

@@ -10,7 +10,7 @@ const Register<Shape, Complement> registered_complement{"complement"};
 Schema<Complement> Complement::schema() {
   Schema<Complement> s(
       "complement", "Everything outside another shape. Unbounded: useful inside an intersection.");
-  s.required("of", &Complement::of, unit::none, "The shape to leave out.");
+  s.required("of", &Complement::of, unit::none, "The shape to exclude.");
   s.check([](Complement& b, CheckContext& c) { set_scene(b, c); });
   return s;
 }

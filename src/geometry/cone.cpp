@@ -9,8 +9,8 @@ const Register<Shape, Cone> registered_cone{"cone"};
 
 Schema<Cone> Cone::schema() {
   Schema<Cone> s("cone", "A cone, or a frustum when both radii are given; a trapezoid in 2D.");
-  s.required("from", &Cone::from, unit::length, "The middle of the base.");
-  s.required("to", &Cone::to, unit::length, "The tip, or the middle of the other end.");
+  s.required("from", &Cone::from, unit::length, "The center of the base.");
+  s.required("to", &Cone::to, unit::length, "The tip, or the center of the other end.");
   s.required("radius_from", &Cone::radius_from, unit::length, "Radius at `from`.").at_least(0);
   s.optional("radius_to", &Cone::radius_to, unit::length, "Radius at `to`; 0 is a tip.")
       .at_least(0);

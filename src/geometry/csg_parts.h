@@ -26,9 +26,9 @@ inline std::vector<Aabb> boxes_of(const std::vector<ShapePtr>& parts, bool flat)
   return out;
 }
 
-/// Whether a part is at least `distance` away from a point outside of its box: then what is asked
-/// of it changes nothing, and need not be computed. `boxes` may be empty, for shapes that no deck
-/// made.
+/// Whether a part is at least `distance` away from a point outside of its box: then it does not
+/// affect the result and need not be evaluated. `boxes` may be empty, for shapes that are not made
+/// by a deck.
 inline bool farther(const std::vector<Aabb>& boxes, std::size_t part, const Vec3& at,
                     double distance) {
   if (part >= boxes.size()) return false;

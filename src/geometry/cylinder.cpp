@@ -12,8 +12,8 @@ Schema<Cylinder> Cylinder::schema() {
       "cylinder",
       "A round cylinder with flat ends. In 2D a disc when its axis is along y (the ends "
       "then coincide in the plane), else a rectangle.");
-  s.required("from", &Cylinder::from, unit::length, "The middle of one end.");
-  s.required("to", &Cylinder::to, unit::length, "The middle of the other end.");
+  s.required("from", &Cylinder::from, unit::length, "The center of one end.");
+  s.required("to", &Cylinder::to, unit::length, "The center of the other end.");
   s.required("radius", &Cylinder::radius, unit::length, "The radius.").above(0);
   s.check([](Cylinder& b, CheckContext& c) {
     set_scene(b, c);

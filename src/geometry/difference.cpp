@@ -9,7 +9,7 @@ const Register<Shape, Difference> registered_difference{"difference"};
 
 Schema<Difference> Difference::schema() {
   Schema<Difference> s("difference", "The first shape without all the others.");
-  s.required("of", &Difference::of, unit::none, "The shape to keep, then those to take away.")
+  s.required("of", &Difference::of, unit::none, "The first shape, then those to subtract.")
       .items(2);
   s.check([](Difference& d, CheckContext& c) {
     set_scene(d, c);

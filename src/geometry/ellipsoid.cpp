@@ -8,11 +8,10 @@ const Register<Shape, Ellipsoid> registered_ellipsoid{"ellipsoid"};
 }
 
 Schema<Ellipsoid> Ellipsoid::schema() {
-  Schema<Ellipsoid> s(
-      "ellipsoid",
-      "An ellipsoid with its axes along x, y and z; an ellipse in 2D. A `transform` "
-      "turns it.");
-  s.required("center", &Ellipsoid::center, unit::length, "The middle.");
+  Schema<Ellipsoid> s("ellipsoid",
+                      "An ellipsoid with its axes along x, y and z; an ellipse in 2D. Use "
+                      "`transform` to rotate it.");
+  s.required("center", &Ellipsoid::center, unit::length, "The center.");
   s.required("semi_axes", &Ellipsoid::semi_axes, unit::length, "Half the width along each axis.");
   s.check([](Ellipsoid& e, CheckContext& c) {
     set_scene(e, c);

@@ -34,15 +34,15 @@ void refuse_unbounded(const Aabb& box) {
                 "the shape is unbounded and cannot be filled: intersect it with a box");
 }
 
-/// Answers for a lattice point: accept it or not, and how far (m) the answer surely holds around
-/// it.
+/// Result for a lattice point: accepted or not, and the distance (m) within which this surely
+/// holds.
 struct Verdict {
   bool accept;
   double holds;
 };
 
 /// Range of cells k whose centres origin + (k + 1/2) dp lie in [lo, hi]; round-off of a millionth
-/// of a cell neither gains nor loses one.
+/// of a cell does not change the range.
 struct Range {
   Index first = 0, last = -1;
   Index size() const { return std::max<Index>(last - first + 1, 0); }
@@ -75,7 +75,7 @@ std::vector<Vec3> collect(const Aabb& box, const Vec3& origin, double dp, int di
       };
       for (Index k = x.first; k <= x.last;) {
         const Verdict v = judge(centre(k));
-        // The distance also answers for the next few points of the row.
+        // The distance also decides for the next few points of the row.
         const auto more = static_cast<Index>(std::min(0.999 * v.holds / dp, 1e9));
         const Index stop = std::min(k + more, x.last);
         if (v.accept)
@@ -109,7 +109,7 @@ double volume(const Aabb& box, int dim) {
   return dim == 3 ? size.prod() : size.x() * size.z();
 }
 
-/// A lattice may be larger than what is taken of it, as for thin shells.
+/// A lattice may be larger than the part that is used, as for thin shells.
 constexpr double largest_lattice = 64.0 * largest_fill;
 
 /// Points of the lattice in a box; at least one along each side, however thin the box is.
@@ -162,8 +162,7 @@ double estimate_fill(const Shape& shape, double dp, int dim, const Aabb& clip) {
   const Aabb box = in_scene(clipped(shape.box(), clip), dim);
   if (box.empty()) return 0.0;
   if (!box.lo.allFinite() || !box.hi.allFinite()) return std::numeric_limits<double>::infinity();
-  // A cell counts by how deep its centre lies, so that thin bodies between the centres are seen
-  // too.
+  // A cell counts by the depth of its centre, so that thin bodies between centres are counted too.
   constexpr double deep = -std::numeric_limits<double>::max();
   return sampled_volume(
              box, dim, [&](const Vec3& p) { return shape.bound(p); },
@@ -183,7 +182,7 @@ double estimate_layers(const Shape& shape, double dp, int dim, double thickness,
              box, dim,
              [&](const Vec3& p) {
                return sign * shape.bound(p);
-             },  // exact ones of composed shapes are dear
+             },  // exact ones of composed shapes are expensive
              [&](double d, double reach) { return overlap(d, reach, -thickness, 0.0); }) /
          std::pow(dp, dim);
 }
@@ -239,8 +238,8 @@ std::vector<Vec3> fill_layers(const Shape& shape, double dp, int dim, double thi
       if (dim == 2) out.y() = 0.0;
       d = -out.maxCoeff();
     } else if (shape.composed()) {
-      // The bound settles the far points cheaply; near the layer the true distance is worth its
-      // price.
+      // The bound decides for distant points at low cost; near the layer the true distance is
+      // needed.
       if (-d >= thickness - slack) return Verdict{false, -d - thickness};
       d = outside ? -shape.signed_distance(p) : shape.signed_distance(p);
     }

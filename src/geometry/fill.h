@@ -8,8 +8,8 @@
 
 namespace sphgeo {
 
-/// More particles than this in one body are taken for a mistake (a millimetre where metres were
-/// meant).
+/// More particles than this in one body are reported as a mistake (such as millimetres given as
+/// metres).
 inline constexpr double largest_fill = 4e9;
 
 /// Expected number of lattice points: the volume (area in 2D) of the shape within `clip`, estimated

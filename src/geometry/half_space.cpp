@@ -11,7 +11,7 @@ Schema<HalfSpace> HalfSpace::schema() {
   Schema<HalfSpace> s("half_space",
                       "Everything below a plane. Unbounded: useful inside an intersection.");
   s.required("point", &HalfSpace::point, unit::length, "Any point of the plane.");
-  s.optional("normal", &HalfSpace::normal, unit::none, "Points out of the solid; any length.");
+  s.optional("normal", &HalfSpace::normal, unit::none, "Outward normal of the solid; any length.");
   s.check([](HalfSpace& h, CheckContext& c) {
     set_scene(h, c);
     if (h.normal.isZero(0))

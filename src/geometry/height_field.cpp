@@ -14,10 +14,9 @@ const Register<Shape, HeightField> registered_height_field{"height_field"};
 }
 
 Schema<HeightField> HeightField::schema() {
-  Schema<HeightField> s(
-      "height_field",
-      "Terrain: solid below a bilinear surface through a grid of heights, with upright "
-      "sides at the edge of the grid.");
+  Schema<HeightField> s("height_field",
+                        "Terrain: solid below a bilinear surface through a grid of heights, with "
+                        "vertical sides at the edge of the grid.");
   s.optional(
       "file", &HeightField::file, unit::none,
       "CSV of numbers only: each row runs along x, row after row along y; # begins a comment.");
@@ -32,14 +31,13 @@ Schema<HeightField> HeightField::schema() {
              "Distance of the rows along y; auto: as along x.")
       .above(0);
   s.optional("origin", &HeightField::origin, unit::length,
-             "Place of the first height of the first row; its z is added to all heights.")
+             "Position of the first height of the first row; its z is added to all heights.")
       .keep_y();
   s.optional("scale", &HeightField::scale, unit::none,
              "Factor on the heights, before the origin's z.");
   s.optional("bottom", &HeightField::bottom, unit::length,
-             "Underside of the solid; auto: without end.");
-  s.optional("section", &HeightField::section, unit::length,
-             "The y at which a 2D scene cuts the grid.");
+             "Underside of the solid; auto: unbounded.");
+  s.optional("section", &HeightField::section, unit::length, "The y of the section in a 2D scene.");
   s.check([](HeightField& h, CheckContext& c) {
     set_scene(h, c);
     if (h.file.has_value() == !h.heights.empty())
@@ -73,7 +71,7 @@ void HeightField::prepare() {
     ny = heights.size() / nx;
     grid_ = heights;
   }
-  if (ny < 1) fail("there is no row of heights");
+  if (ny < 1) fail("no row of heights is given");
   if (nx < 2) fail("at least two heights in a row are needed");
   for (double& v : grid_) {
     if (!std::isfinite(v)) fail("a height is missing or not finite");
@@ -145,7 +143,7 @@ double HeightField::patch_distance_squared(const Vec3& p, std::int32_t cell, dou
   const double c0 = node(i, j), cu = node(i + 1, j) - c0, cv = node(i, j + 1) - c0;
   const double cuv = node(i + 1, j + 1) - c0 - cu - cv;
   // Without its twist the patch is a part of a plane, no farther than w from it. Far from the
-  // ground almost all patches end here.
+  // ground this decides for almost all patches.
   {
     const double zu = cu + 0.5 * cuv, zv = cv + 0.5 * cuv, w = 0.25 * std::abs(cuv);
     const double fall =
@@ -174,7 +172,8 @@ double HeightField::patch_distance_squared(const Vec3& p, std::int32_t cell, dou
     const double huu = spacing * spacing + zu * zu, hvv = dy_ * dy_ + zv * zv;
     double huv = zu * zv + rz * cuv;
     double det = huu * hvv - huv * huv;
-    if (det <= 0.01 * huu * hvv) {  // far from the surface the twist may spoil the Hessian
+    if (det <=
+        0.01 * huu * hvv) {  // far from the surface the twist may make the Hessian indefinite
       huv = zu * zv;
       det = huu * hvv - huv * huv;
     }
@@ -194,7 +193,8 @@ double HeightField::patch_distance_squared(const Vec3& p, std::int32_t cell, dou
 double HeightField::signed_distance(const Vec3& at) const {
   const Vec3 p{at.x(), ny_ == 1 ? 0.0 : at.y(), at.z()};
   const Vec3 nearest = p.cwiseMax(lo_).cwiseMin(hi_);
-  double side = std::max(lo_.x() - p.x(), p.x() - hi_.x());  // signed distance to the upright sides
+  double side =
+      std::max(lo_.x() - p.x(), p.x() - hi_.x());  // signed distance to the vertical sides
   double out = std::max(side, 0.0);
   if (ny_ > 1) {
     const double side_y = std::max(lo_.y() - p.y(), p.y() - hi_.y());
@@ -204,7 +204,7 @@ double HeightField::signed_distance(const Vec3& at) const {
   if (out > 0.0) side = out;
   const double above = p.z() - height(nearest.x(), nearest.y());
   const double under = bottom ? *bottom - p.z() : -std::numeric_limits<double>::infinity();
-  // Beside the sides or beneath the underside, the top plays no part.
+  // Beside the sides or below the underside the top surface is not needed.
   if (above <= 0.0 && (side > 0.0 || under > 0.0)) return extruded_distance(side, under);
   const double start = out > 0.0 ? std::numeric_limits<double>::infinity() : above * above;
   double best = start;

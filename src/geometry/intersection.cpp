@@ -8,8 +8,8 @@ const Register<Shape, Intersection> registered_intersection{"intersection"};
 }
 
 Schema<Intersection> Intersection::schema() {
-  Schema<Intersection> s("intersection", "The points that several shapes share.");
-  s.required("of", &Intersection::of, unit::none, "The shapes to cut with each other.").items(1);
+  Schema<Intersection> s("intersection", "The common part of several shapes.");
+  s.required("of", &Intersection::of, unit::none, "The shapes to intersect.").items(1);
   s.check([](Intersection& b, CheckContext& c) {
     set_scene(b, c);
     if (b.box().empty()) c.error("of", "the shapes have no point in common");

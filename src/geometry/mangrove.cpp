@@ -11,9 +11,9 @@
 namespace sphgeo {
 namespace {
 
-/// A tree on stilt roots: chains of capsules that leave the trunk, bend over and run down to the
-/// ground, some with a branch (after the Rhizophora of flume experiments: arches that are parabolas
-/// of the distance from the trunk).
+/// A tree on stilt roots: chains of capsules that leave the trunk, arch over and reach the ground,
+/// some with a branch (after the Rhizophora of flume experiments: arches that are parabolas of the
+/// distance from the trunk).
 struct Mangrove final : SceneShape {
   Vec3 foot = Vec3::Zero();
   double trunk_radius = 0, height = 0;
@@ -29,10 +29,11 @@ struct Mangrove final : SceneShape {
                        "A tree on stilt roots: a trunk, and arched roots made of capsules. In 2D "
                        "its section with the plane y = 0.");
     s.required("foot", &Mangrove::foot, unit::length, "The point of the ground below the trunk.");
-    s.required("height", &Mangrove::height, unit::length, "Of the top of the trunk above the foot.")
+    s.required("height", &Mangrove::height, unit::length,
+               "Height of the top of the trunk above the foot.")
         .above(0);
     s.required("trunk_radius", &Mangrove::trunk_radius, unit::length,
-               "Radius of the trunk, which begins where the highest root leaves it.")
+               "Radius of the trunk, which begins at the highest root.")
         .above(0);
     s.required("root_radius", &Mangrove::root_radius, unit::length,
                "Radius of a root at the trunk; it tapers to 0.6 of that at the ground.")
@@ -44,19 +45,17 @@ struct Mangrove final : SceneShape {
                "Largest distance from the trunk at which a root reaches the ground; the least is "
                "half of it.")
         .above(0);
-    s.optional("roots", &Mangrove::roots, unit::none, "How many leave the trunk.")
-        .at_least(1)
-        .at_most(500);
+    s.optional("roots", &Mangrove::roots, unit::none, "Number of roots.").at_least(1).at_most(500);
     s.optional("branching", &Mangrove::branching, unit::none,
-               "Part of the roots that have a branch.")
+               "Fraction of the roots that have a branch.")
         .at_least(0)
         .at_most(1);
-    s.optional("below", &Mangrove::below, unit::length, "How far the roots go on below the foot.")
+    s.optional("below", &Mangrove::below, unit::length, "Length of the roots below the foot.")
         .at_least(0);
-    s.optional("segments", &Mangrove::segments, unit::none, "Capsules in a root.")
+    s.optional("segments", &Mangrove::segments, unit::none, "Number of capsules in a root.")
         .at_least(2)
         .at_most(100);
-    s.optional("seed", &Mangrove::seed, unit::none, "Another seed, another tree.").at_least(0);
+    s.optional("seed", &Mangrove::seed, unit::none, "Another seed gives another tree.").at_least(0);
     s.check([](Mangrove& m, CheckContext& c) {
       set_scene(m, c);
       if (m.root_height > m.height)
@@ -70,7 +69,7 @@ struct Mangrove final : SceneShape {
   double signed_distance(const Vec3& at) const override {
     double least = segment_distance(at, trunk_[0], trunk_[1]) - trunk_radius;
     for (const Piece& p : pieces_) {
-      // Farther from the middle than its ball reaches, a piece cannot be the nearest.
+      // A piece whose bounding ball is farther away than the best distance cannot be the nearest.
       if ((at - p.middle).norm() - p.reach >= least) continue;
       least = std::min(least, segment_distance(at, p.a, p.b) - p.radius);
     }

@@ -69,7 +69,7 @@ class Contour {
       for (Index y = 0; y + 1 < n_[1]; ++y)
         for (Index x = 0; x + 1 < n_[0]; ++x) {
           const Index o = (z * n_[1] + y) * n_[0] + x;
-          // The bound tells at once that most cells are far from the surface.
+          // The bound excludes most cells, which are far from the surface.
           if (std::abs(value_[at(o)]) > 1.75 * spacing_) continue;
           for (int t = 0; t < 6; ++t) {
             const int last = paths[t][0], middle = paths[t][1], first = 3 - last - middle;
@@ -79,7 +79,7 @@ class Contour {
         }
   }
 
-  /// Marching squares; the two ambiguous cases are settled by the middle of the square.
+  /// Marching squares; the two ambiguous cases are decided by the centre of the square.
   void outline() {
     for (Index z = 0; z + 1 < n_[2]; ++z)
       for (Index x = 0; x + 1 < n_[0]; ++x) {
@@ -206,7 +206,7 @@ SurfaceMesh surface_mesh(const Shape& shape, double spacing, int dim, const Aabb
   if (dim == 2) box.lo.y() = box.hi.y() = 0.0;
   if (box.empty()) return {};
   if (!box.lo.allFinite() || !box.hi.allFinite())
-    throw Error(ExitCode::usage, "the shape is unbounded and has no finite surface to show");
+    throw Error(ExitCode::usage, "the shape is unbounded and has no finite surface");
   if (!cut) {
     if (const auto* b = dynamic_cast<const Box*>(&shape))
       return dim == 3 ? box_surface(*b)

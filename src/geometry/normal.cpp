@@ -6,9 +6,9 @@ namespace sphgeo {
 
 Vec3 outward_normal(const Shape& shape, const Vec3& p, double step, int dim) {
   // On a ridge of the distance function the two sides of a difference cancel exactly; a wider
-  // stencil then sees which side is nearer. 0.3 tells a ridge from a 90 degree edge (0.7).
-  // In the very middle of a plate it sees neither, and would go on to its far ends: there a
-  // stencil beside the point chooses one of the sides.
+  // stencil then shows which side is nearer. 0.3 tells a ridge from a 90 degree edge (0.7). On the
+  // mid-plane of a plate it shows neither, and would extend to the far ends: there a stencil beside
+  // the point selects one of the sides.
   Vec3 best = Vec3::Zero();
   const auto look = [&](const Vec3& at, double h) {
     Vec3 g = Vec3::Zero();

@@ -32,7 +32,7 @@ void check_polygon(Polygon& p, CheckContext& c) {
 Schema<Polygon> Polygon::schema() {
   Schema<Polygon> s("polygon",
                     "A polygon in the x-z plane. In 3D it extends along y from y_min to y_max, and "
-                    "without end where they are not given.");
+                    "is unbounded where they are not given.");
   s.required("points", &Polygon::points, unit::length,
              "The corners in order around the outline, in either sense; y is ignored.")
       .items(3, 5000);
@@ -58,7 +58,7 @@ Schema<Prism> Prism::schema() {
 void Polygon::prepare() {
   corners_.clear();
   for (const Vec3& p : points) corners_.emplace_back(p.x(), p.z());
-  // A repeated first corner at the end, and corners given twice, close the outline just the same.
+  // A repeated first corner at the end, and corners given twice, also close the outline.
   std::erase_if(corners_, [&, k = std::size_t{0}](const Vec2& p) mutable {
     const std::size_t i = k++;
     return i > 0 && Vec2(points[i - 1].x(), points[i - 1].z()) == p;

@@ -28,7 +28,7 @@ class FootSearch {
     std::vector<Hit> hits;
     double best = inf;
     auto shoot = [&](const Vec3& direction) {
-      // Hits much farther than the best cannot slide to a nearer place than its own descent.
+      // Hits much farther than the best cannot descend to a nearer point than the best does.
       const double t = march(direction, 2.0 * best, reach_);
       if (t == inf) return false;
       hits.push_back({direction, t});
@@ -39,7 +39,7 @@ class FootSearch {
     std::vector<Vec3> missed;
     for (const Vec3& d : directions(flat_))
       if (!shoot(d)) missed.push_back(d);
-    // A ray along a seam creeps; once a length is known it may take longer steps.
+    // A ray along a seam advances slowly; once a length is known it may take longer steps.
     if (best < inf)
       for (const Vec3& d : missed) shoot(d);
     double result = best;
@@ -110,7 +110,7 @@ class FootSearch {
         const Vec3 to = q + share * (foot - q) - p_;
         const double length = to.norm();
         if (length < 1e-300) continue;
-        // Starting just before the foot keeps a ray along a seam from creeping.
+        // Starting just before the foot avoids the small steps of a ray along a seam.
         const double start = 0.9 * length;
         const bool clear = g(p_ + start * (to / length)) <= 0.0;
         const double t = march(to / length, distance, clear ? start : reach_);

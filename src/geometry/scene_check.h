@@ -7,7 +7,7 @@
 
 namespace sphgeo {
 
-/// Tells the shape whether the scene is two-dimensional.
+/// Sets whether the scene is two-dimensional.
 inline void set_scene(SceneShape& shape, const CheckContext& context) {
   shape.flat = context.dimension() == 2;
 }

@@ -18,7 +18,7 @@
 
 namespace sphgeo {
 
-/// A shape that knows whether the scene is the x-z plane.
+/// A shape with a flag for scenes in the x-z plane.
 struct SceneShape : Shape {
   bool flat = false;
 
@@ -125,7 +125,7 @@ struct HeightField final : SceneShape {
   double spacing = 0.0;
   std::optional<double> spacing_y;
   double scale = 1.0;            ///< factor on the heights
-  std::optional<double> bottom;  ///< underside, z; none: without end
+  std::optional<double> bottom;  ///< underside, z; none: unbounded
   double section = 0.0;          ///< 2D: the y of the section
   static Schema<HeightField> schema();
   /// Reads the file and builds the search tree. Throws IoError or Error for unusable heights.
@@ -138,7 +138,7 @@ struct HeightField final : SceneShape {
  private:
   double node(int i, int j) const;
   double patch_distance_squared(const Vec3& p, std::int32_t cell,
-                                double best) const;  // endless when more than `best`
+                                double best) const;  // infinite when more than `best`
 
   std::vector<double> grid_;  // metres, row by row
   int nx_ = 0, ny_ = 0;
@@ -182,14 +182,14 @@ struct BoundedShape : SceneShape {
 };
 
 /// For a point whose bound is zero but for round-off: whether it lies on a seam within the solid
-/// (where parts that touch hide each other's surface) rather than on the surface. Looks `reach` (m)
-/// around.
+/// (where parts that touch cover each other's surface) rather than on the surface. Searches within
+/// `reach` (m).
 bool on_inner_seam(const Shape& shape, const Vec3& at, double reach, bool flat);
 
 /// All points of any part. The distance is exact outside; inside it is searched (see refine.h).
 struct Union final : BoundedShape {
   std::vector<ShapePtr> of;
-  std::vector<Aabb> boxes;  ///< of the parts, to pass over those that are far
+  std::vector<Aabb> boxes;  ///< of the parts, to skip distant ones
   static Schema<Union> schema();
   double bound(const Vec3& at) const override;
   double signed_distance(const Vec3& at) const override;
@@ -197,7 +197,7 @@ struct Union final : BoundedShape {
   void inspect(CheckContext& context) const override;
 };
 
-/// The points that all parts share. The distance is exact inside; outside it is searched.
+/// The common part of all parts. The distance is exact inside; outside it is searched.
 struct Intersection final : BoundedShape {
   std::vector<ShapePtr> of;
   static Schema<Intersection> schema();
@@ -258,7 +258,7 @@ struct Transform final : BoundedShape {
   }
   Aabb box() const override;
   void inspect(CheckContext& context) const override;
-  /// The point of the inner shape that lands on `at`, and the reverse.
+  /// The point of the inner shape that is mapped to `at`, and the inverse.
   Vec3 back(const Vec3& at) const {
     return about + turn_.transpose() * (at - translate - about) / scale;
   }

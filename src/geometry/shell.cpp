@@ -10,19 +10,18 @@ const Register<Shape, Shell> registered_shell{"shell"};
 }
 
 Schema<Shell> Shell::schema() {
-  Schema<Shell> s(
-      "shell",
-      "A hollow body: a skin of even thickness along the surface of another shape. Outer "
-      "edges of an outside skin are rounded.");
-  s.required("of", &Shell::of, unit::none, "The shape whose surface carries the skin.");
-  s.required("thickness", &Shell::thickness, unit::length, "Thickness of the skin.").above(0);
+  Schema<Shell> s("shell",
+                  "A hollow body: a shell of uniform thickness along the surface of another shape. "
+                  "Outer edges of an outside shell are rounded.");
+  s.required("of", &Shell::of, unit::none, "The shape whose surface defines the shell.");
+  s.required("thickness", &Shell::thickness, unit::length, "Thickness of the shell.").above(0);
   s.optional("side", &Shell::side, unit::none,
-             "Where the skin lies: inside the shape, around it, or half on each side.")
+             "Position of the shell: inside the shape, outside of it, or half on each side.")
       .choices({"inside", "outside", "centered"});
   s.check([](Shell& b, CheckContext& c) {
     set_scene(b, c);
     if (c.resolution() > 0.0 && b.thickness < c.resolution() * (1.0 - 1e-9))
-      c.warning("thickness", "the skin is thinner than the particle spacing",
+      c.warning("thickness", "the shell is thinner than the particle spacing",
                 "make it at least one spacing thick, better three");
   });
   return s;

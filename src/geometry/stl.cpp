@@ -95,7 +95,7 @@ void Stl::prepare() {
   if (flat) {
     section_ = cut_at_y0(mesh);
     if (section_.empty())
-      throw IoError(file.path, "the surface does not meet the plane y = 0 of the 2D scene");
+      throw IoError(file.path, "the surface does not intersect the plane y = 0 of the 2D scene");
     std::vector<Aabb> boxes(section_.size() / 2);
     for (std::size_t k = 0; k < boxes.size(); ++k) {
       boxes[k].extend(in_plane(section_[2 * k]));
@@ -133,11 +133,12 @@ void Stl::inspect(CheckContext& context) const {
   };
   if (health_.open_edges > 0) {
     const Vec3& at = health_.open_at;
-    context.error("file",
-                  "the surface is open: " + count(health_.open_edges, "edge has", "edges have") +
-                      " only one face, one of them near [" + std::to_string(at.x()) + ", " +
-                      std::to_string(at.y()) + ", " + std::to_string(at.z()) + "] m",
-                  "close the holes, or raise weld_tolerance if corners that should meet are apart");
+    context.error(
+        "file",
+        "the surface is open: " + count(health_.open_edges, "edge has", "edges have") +
+            " only one face, one of them near [" + std::to_string(at.x()) + ", " +
+            std::to_string(at.y()) + ", " + std::to_string(at.z()) + "] m",
+        "close the holes, or raise weld_tolerance if corners that should coincide are apart");
   }
   if (health_.non_manifold_edges > 0)
     context.warning("file",

@@ -52,7 +52,7 @@ Triangles read_binary(const std::string& bytes, const std::string& path) {
   const std::size_t count = read_u32(bytes.data() + header_bytes);
   const std::size_t expected = header_bytes + 4 + face_bytes * count;
   if (bytes.size() < expected)
-    throw IoError(path, "the STL file is cut short: its header promises " + std::to_string(count) +
+    throw IoError(path, "the STL file is truncated: its header states " + std::to_string(count) +
                             " triangles (" + std::to_string(expected) + " bytes) but it has " +
                             std::to_string(bytes.size()) + " bytes");
   Triangles mesh;
@@ -125,7 +125,7 @@ Triangles read_text(const std::string& text, const std::string& path) {
       have = 0;
     }
   }
-  if (have != 0) words.fail("the STL file is cut short: its last face is not closed");
+  if (have != 0) words.fail("the STL file is truncated: its last face is not closed");
   return mesh;
 }
 
@@ -143,7 +143,7 @@ Triangles read_stl(const std::string& path) {
       !size_fits && bytes.find("solid") < header_bytes && bytes.find("facet") != std::string::npos;
   if (!text && !has_header) throw IoError(path, "not an STL file");
   Triangles mesh = text ? read_text(bytes, path) : read_binary(bytes, path);
-  if (mesh.faces.empty()) throw IoError(path, "the STL file holds no triangles");
+  if (mesh.faces.empty()) throw IoError(path, "the STL file has no triangles");
   return mesh;
 }
 

@@ -9,7 +9,7 @@ namespace sphgeo {
 
 /// All faces of the file with three corners of their own each (weld() joins them), lengths as in
 /// the file. The normals of the file are ignored: the order of the corners decides. Throws IoError
-/// when the file cannot be read, is cut short, holds something other than finite triangles, or more
+/// when the file cannot be read, is truncated, has something other than finite triangles, or more
 /// than ten million of them.
 Triangles read_stl(const std::string& path);
 

@@ -11,8 +11,8 @@ const Register<Shape, Transform> registered_transform{"transform"};
 
 Schema<Transform> Transform::schema() {
   Schema<Transform> s("transform",
-                      "Another shape, scaled and turned about a point and then moved.");
-  s.required("of", &Transform::of, unit::none, "The shape to place.");
+                      "Another shape, scaled and rotated about a point and then moved.");
+  s.required("of", &Transform::of, unit::none, "The shape to transform.");
   s.optional("scale", &Transform::scale, unit::none, "Factor on all lengths, about `about`.")
       .above(0);
   s.optional("rotate", &Transform::rotate, unit::angle, "Angle, right-handed about `axis`.");

@@ -36,8 +36,8 @@ struct CellHash {
 }  // namespace
 
 Index weld(Triangles& mesh, double tolerance) {
-  // Below the spacing of the numbers themselves only equal corners are near, and cells that small
-  // could not be counted.
+  // Below the resolution of the numbers only equal corners are near, and cells that small could not
+  // be counted.
   double largest = 0.0;
   for (const Vec3& p : mesh.points) largest = std::max(largest, p.cwiseAbs().maxCoeff());
   if (tolerance < 1e-17 * largest) tolerance = 0.0;
@@ -57,7 +57,7 @@ Index weld(Triangles& mesh, double tolerance) {
     std::int32_t found = -1;
     const auto next = static_cast<std::int32_t>(kept.size());
     if (tolerance <= 0.0) {
-      // Adding zero turns -0 into 0, which compares equal anyway but would print differently.
+      // Adding zero turns -0 into 0, which compares equal but is written differently.
       const auto [it, fresh] = equal.try_emplace({p.x() + 0.0, p.y() + 0.0, p.z() + 0.0}, next);
       if (!fresh) found = it->second;
     } else {
@@ -151,7 +151,7 @@ MeshHealth repair_orientation(Triangles& mesh) {
 
 double enclosed_volume(const Triangles& mesh) {
   if (mesh.points.empty()) return 0.0;
-  const Vec3 o = mesh.points.front();  // a nearby origin keeps the digits
+  const Vec3 o = mesh.points.front();  // a nearby origin avoids cancellation
   double six = 0.0;
   for (const auto& f : mesh.faces)
     six +=

@@ -1,5 +1,5 @@
 #pragma once
-// A closed triangle surface: its health (open, non-manifold, flipped), the distance to it and
+// A closed triangle surface: its defects (open, non-manifold, flipped), the distance to it and
 // whether a point lies inside.
 
 #include <array>
@@ -24,7 +24,7 @@ struct MeshHealth {
   Index flipped_faces = 0;       ///< faces turned against the majority of their connected part
   Index degenerate_faces = 0;    ///< faces without area or with a repeated corner; dropped
   bool inside_out = false;       ///< the whole surface encloses a negative volume
-  Vec3 open_at = Vec3::Zero();   ///< the middle of one open edge, to find it by
+  Vec3 open_at = Vec3::Zero();   ///< the centre of one open edge, to locate it
 };
 
 /// Makes corners of nearer than `tolerance` (m) one corner and drops faces that collapse; returns

@@ -22,7 +22,7 @@ struct DruckerPrager {
 
 namespace drucker_prager {
 
-/// What stands for no bound: far beyond every stress, and its square is a number yet.
+/// Stands for no bound: far beyond every stress, and its square is finite.
 inline constexpr double unbounded = 1e150;
 
 /// The edge of Mohr and Coulomb's pyramid on which the cone lies. Eq. 14 is that of plane strain;
@@ -55,7 +55,7 @@ DruckerPrager<T> with_strength(DruckerPrager<T> soil, const T& strength) {
   return soil;
 }
 
-/// What one step of the stress point did besides changing the stress.
+/// Results of one step of the stress point besides the stress.
 template <class T>
 struct PlasticStep {
   T strain;  ///< equivalent plastic strain, sqrt(2/3 de:de) of its deviator
@@ -85,8 +85,8 @@ struct StressInvariants {
 
 /// Turns a stress by the spin of the velocity gradient over a step: the terms omega.sigma -
 /// sigma.omega of Eq. 15. They are integrated by the rotation of Cayley, R = (I - W/2)^-1 (I + W/2)
-/// with W = omega dt, instead of Eq. 18: Euler's step would let the invariants grow by (omega dt)^2
-/// in every step.
+/// with W = omega dt, instead of Eq. 18: with an Euler step the invariants would grow by (omega
+/// dt)^2 in every step.
 template <class T>
 void rotate_stress(T (&s)[6], const T (&gradient)[3][3], const T& dt) {
   const T half = T(0.25) * dt;  // half the angle: omega is half of the skew part
@@ -125,12 +125,12 @@ void symmetric_part(const T (&gradient)[3][3], T (&rate)[6]) {
 /// One step of Algorithm 1: the stress [Pa] at the end of a step of dt [s] with the velocity
 /// gradient dv_a/dx_b [1/s]. The stress ends in the yield surface or on it.
 ///
-/// The print takes the direction of the flow and lambda (Eq. 17) from the stress at the start of
-/// the step. That is stable only while the strain of a step stays below the strain at yield, a few
-/// 1e-4 for sand. In a fast shear layer it is a hundred times larger: what the flow takes off then
-/// lies across the strain, the stress of the next step across that of this one, and the layer bears
-/// 0.40 of its normal stress instead of 0.48. Here both are taken at the end of the step, which
-/// Eqs. 12 to 15 allow in closed form; for small steps it is the same to first order.
+/// In the paper the direction of the flow and lambda (Eq. 17) are those of the stress at the start
+/// of the step. That is stable only while the strain of a step stays below the strain at yield, a
+/// few 1e-4 for sand. In a fast shear layer it is a hundred times larger: the plastic correction is
+/// then not aligned with the strain increment, the deviator alternates from step to step, and the
+/// layer bears 0.40 of its normal stress instead of 0.48. Here both are taken at the end of the
+/// step, which Eqs. 12 to 15 allow in closed form; for small steps both agree to first order.
 template <class T>
 PlasticStep<T> update_stress(T (&stress)[6], const T (&gradient)[3][3], const T& dt,
                              const DruckerPrager<T>& m) {
@@ -150,8 +150,8 @@ PlasticStep<T> update_stress(T (&stress)[6], const T (&gradient)[3][3], const T&
                  (m.shear + T(9) * m.bulk * m.friction * m.dilation);
   const T first = elastic.first - T(9) * m.bulk * m.dilation * flow;
 
-  // Eq. 19, then Eq. 20 also after it: Algorithm 1 leaves the deviator of a stress moved to the
-  // apex as it is, which is outside of the yield surface.
+  // Eq. 19, then Eq. 20 also after it: Algorithm 1 does not change the deviator of a stress moved
+  // to the apex, which is then outside of the yield surface.
   const T bounded = min(m.apex, first);
   const T radius = max(T(0), m.strength - m.friction * bounded);
   const T scale = select(length > radius, radius / max(T(1e-140), length), T(1));

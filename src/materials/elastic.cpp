@@ -15,12 +15,11 @@ Schema<Elastic> Elastic::schema() {
       .choices({"neo_hookean", "saint_venant_kirchhoff"})
       .equation("Eqs. 38 to 40");
   s.optional("damping", &Elastic::damping, unit::rate,
-             "damping by mass, -damping v, to bring a body to rest; 0 for everything that is to "
-             "move freely")
+             "mass-proportional damping, -damping v, to bring a body to rest; 0 for free motion")
       .at_least(0);
   s.optional("viscosity_factor", &Elastic::viscosity_factor, unit::none,
-             "artificial viscosity between particles, in parts of rho_0 c h: takes the energy of "
-             "waves as short as the spacing, and little of all others; 0: none")
+             "artificial viscosity between particles, as a fraction of rho_0 c h: damps waves as "
+             "short as the spacing, and others little; 0: none")
       .at_least(0)
       .at_most(1);
   return s;

@@ -4,13 +4,11 @@
 namespace sphgeo {
 
 Schema<Rigid> Rigid::schema() {
-  Schema<Rigid> s("rigid",
-                  "solid that does not deform: it moves with the six degrees of freedom of its "
-                  "body (three in 2D)");
+  Schema<Rigid> s("rigid", "rigid solid with six degrees of freedom (three in 2D)");
   declare_solid_keys(s);
   s.optional("stiffness", &Rigid::stiffness, unit::pressure,
-             "of its contacts with other solids and walls: the pressure at a penetration of about "
-             "a spacing")
+             "stiffness of its contacts with other solids and walls: the pressure at a penetration "
+             "of about a spacing")
       .above(0)
       .equation("Eq. 79");
   return s;

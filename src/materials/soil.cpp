@@ -14,7 +14,7 @@ Schema<Soil> Soil::schema() {
              "density of the grains, rho^s; with volume_fraction 1 that of the bulk")
       .above(0);
   s.optional("volume_fraction", &Soil::volume_fraction, unit::none,
-             "share of the grains in the volume at t = 0; auto: each body gives its own")
+             "volume fraction of the grains at t = 0; auto: given by each body")
       .above(0)
       .at_most(1)
       .equation("Eq. 1");
@@ -39,8 +39,8 @@ Schema<Soil> Soil::schema() {
       .at_least(0)
       .equation("Eq. 14");
   s.optional("saturated_cohesion", &Soil::saturated_cohesion, unit::pressure,
-             "cohesion at full saturation; between, it falls linearly; auto: cohesion does not "
-             "depend on water")
+             "cohesion at full saturation, linear in the degree of saturation; auto: cohesion does "
+             "not depend on saturation")
       .at_least(0)
       .equation("Eq. 108");
   s.optional("dilation_angle", &Soil::dilation_angle, unit::angle, "dilation angle psi")
@@ -48,9 +48,9 @@ Schema<Soil> Soil::schema() {
       .below(1.5)
       .equation("Eq. 14");
   s.optional("cone", &Soil::cone, unit::none,
-             "loading in which the cone has the strength of Mohr and Coulomb: plane strain, as Eq. "
-             "14 has it, or triaxial compression or extension; "
-             "in 3D the first is weak where sand is pressed from one side (30 deg act as 21)")
+             "stress path in which the cone matches Mohr and Coulomb: plane strain, as in Eq. 14, "
+             "or triaxial compression or extension; in 3D the first underestimates the strength in "
+             "triaxial compression (30 deg act as 21)")
       .choices({"plane_strain", "compression", "extension"})
       .equation("Eq. 14");
   s.optional("drag", &Soil::drag, unit::none,
@@ -58,7 +58,7 @@ Schema<Soil> Soil::schema() {
              "grain_size, else none")
       .choices({"auto", "ergun", "darcy", "none"});
   s.optional("grain_size", &Soil::grain_size, unit::length,
-             "characteristic grain size D_c of Ergun's drag, mostly D50")
+             "characteristic grain size D_c of Ergun's drag, usually D50")
       .above(0)
       .equation("Eq. 31");
   s.optional("hydraulic_conductivity", &Soil::hydraulic_conductivity, unit::speed,
@@ -75,7 +75,7 @@ Schema<Soil> Soil::schema() {
       .equation("Eq. 31");
   s.optional("skeleton", &Soil::skeleton, unit::none,
              "deformable; fixed: it never moves; prescribed: it keeps the velocity field of its "
-             "bodies, whatever the stress")
+             "bodies, independent of stress")
       .choices({"deformable", "fixed", "prescribed"});
   s.check([](Soil& m, CheckContext& c) {
     if (m.drag == "ergun" && !m.grain_size)
@@ -87,9 +87,9 @@ Schema<Soil> Soil::schema() {
     if (m.drag == "auto" && m.grain_size && m.hydraulic_conductivity)
       c.error("hydraulic_conductivity",
               "grain_size and hydraulic_conductivity belong to two drag laws",
-              "give one of them, or say which: 'drag: ergun' or 'drag: darcy'");
+              "give one of them, or choose with 'drag: ergun' or 'drag: darcy'");
     if (m.elastic()) {
-      // By value: a resolved deck, which a run may be made of again, names every key.
+      // By value: a resolved deck, which may be run again, has every key.
       const std::pair<const char*, bool> plastic[] = {
           {"friction_angle", m.friction_angle.has_value()},
           {"friction", m.friction.has_value()},
@@ -108,13 +108,13 @@ Schema<Soil> Soil::schema() {
     if (!m.friction_angle && !m.friction)
       c.error("", "the soil has no friction",
               "give friction_angle (0 deg is allowed) or friction, or plasticity: none");
-    // More dilation than friction makes the flow a source of energy.
+    // With more dilation than friction plastic flow would produce energy.
     if (std::tan(m.dilation_angle) > m.tan_friction() * (1 + 1e-12))
       c.error("dilation_angle", "the dilation angle exceeds the friction angle",
               "the plastic work would be negative");
     if (m.saturated_cohesion && *m.saturated_cohesion > m.cohesion)
       c.error("saturated_cohesion", "the saturated cohesion exceeds the cohesion",
-              "water takes cohesion away");
+              "saturation reduces cohesion");
   });
   return s;
 }

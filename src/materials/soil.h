@@ -21,10 +21,10 @@ struct Soil final : MaterialSpec {
   double cohesion = 0;                        ///< c, Pa
   std::optional<double> saturated_cohesion;   ///< c of Eq. 108 at full saturation, Pa
   double dilation_angle = 0;                  ///< psi, rad
-  std::string cone =
-      "plane_strain";  ///< plane_strain | compression | extension: where it meets Mohr and Coulomb
-  std::string drag = "auto";         ///< auto | ergun | darcy | none, of water in the soil
-  std::optional<double> grain_size;  ///< D_c of Eq. 31, m
+  std::string cone = "plane_strain";  ///< plane_strain | compression | extension: where it matches
+                                      ///< Mohr and Coulomb
+  std::string drag = "auto";          ///< auto | ergun | darcy | none, of water in the soil
+  std::optional<double> grain_size;   ///< D_c of Eq. 31, m
   std::optional<double> hydraulic_conductivity;  ///< K^s of Eq. 29, m/s
   double drag_viscous = 150;                     ///< alpha_d of Eq. 31
   double drag_inertial = 1.75;                   ///< beta_d of Eq. 31
@@ -33,10 +33,10 @@ struct Soil final : MaterialSpec {
   std::string phase() const override { return "soil"; }
   double bulk_modulus() const { return youngs_modulus / (3 * (1 - 2 * poisson_ratio)); }
   double shear_modulus() const { return youngs_modulus / (2 * (1 + poisson_ratio)); }
-  /// Stiffness of a column that cannot expand sideways, Pa.
+  /// Oedometric modulus: stiffness of a laterally confined column, Pa.
   double oedometric_modulus() const { return bulk_modulus() + 4 * shear_modulus() / 3; }
   bool elastic() const { return plasticity == "none"; }
-  /// The drag law: ergun, darcy or none; `auto` goes by what is given.
+  /// The drag law: ergun, darcy or none; `auto` follows from the given keys.
   std::string drag_law() const {
     if (drag != "auto") return drag;
     return hydraulic_conductivity ? "darcy" : grain_size ? "ergun" : "none";

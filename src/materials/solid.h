@@ -11,11 +11,12 @@ namespace sphgeo {
 
 /// What elastic and rigid solids share.
 struct SolidMaterial : MaterialSpec {
-  double density = 0;            ///< rho_0, kg/m3
-  std::string slip = "no_slip";  ///< no_slip | free_slip: water and soil on its surface
-  double friction = 0;  ///< Coulomb coefficient of contacts; of two solids the smaller counts
-  double contact_damping =
-      0;  ///< of approach in a contact, in parts of rho_0 c_0; of two solids the mean
+  double density = 0;  ///< rho_0, kg/m3
+  std::string slip =
+      "no_slip";        ///< no_slip | free_slip: condition for water and soil on its surface
+  double friction = 0;  ///< Coulomb coefficient of contacts; between two solids the smaller one
+  double contact_damping = 0;  ///< damping of approach in a contact, as a fraction of rho_0 c_0;
+                               ///< between two solids the mean
 
   std::string phase() const final { return "solid"; }
   virtual bool rigid() const = 0;
@@ -44,7 +45,7 @@ struct Elastic final : SolidMaterial {
   static Schema<Elastic> schema();
 };
 
-/// A solid whose deformation nobody asks about: six degrees of freedom.
+/// A rigid solid: six degrees of freedom.
 struct Rigid final : SolidMaterial {
   double stiffness = 1e7;  ///< of its contacts with solids and walls, Pa
 
@@ -60,15 +61,15 @@ void declare_solid_keys(Schema<S>& s) {
       .above(0)
       .equation("Eq. 34");
   s.optional("slip", &S::slip, unit::none,
-             "whether water and soil stick to its surface or slide along it")
+             "no_slip or free_slip condition for water and soil on its surface")
       .choices({"no_slip", "free_slip"});
   s.optional("friction", &S::friction, unit::none,
-             "Coulomb friction of its contacts with walls and other solids; of two solids the "
-             "smaller counts")
+             "Coulomb friction coefficient of its contacts with walls and other solids; between "
+             "two solids the smaller one")
       .at_least(0);
   s.optional(
        "contact_damping", &S::contact_damping, unit::none,
-       "resistance to approach in a contact, in parts of rho_0 c_0; of two solids the mean counts")
+       "damping of approach in a contact, as a fraction of rho_0 c_0; between two solids the mean")
       .at_least(0)
       .at_most(2);
 }
@@ -79,8 +80,7 @@ inline const SolidMaterial* solid_of(const Model& model, const Body& body) {
 }
 bool has_solids(const Model& model);
 
-/// The spacings of solids, each once, in order of the bodies, m: every one has a particle set of
-/// its own.
+/// The spacings of solids, each once, in order of the bodies, m: each has its own particle set.
 std::vector<double> solid_spacings(const Model& model);
 
 /// The set of the solids of that spacing: "solids", "solids_2" ...

@@ -15,8 +15,8 @@ Schema<Water> Water::schema() {
              "changes near 1 %")
       .above(0);
   s.optional("max_speed", &Water::max_speed, unit::speed,
-             "largest speed to be expected; default: estimated from heights, initial speeds and "
-             "moving boundaries")
+             "largest expected speed; default: estimated from heights, initial speeds and moving "
+             "boundaries")
       .above(0);
   return s;
 }

@@ -20,7 +20,7 @@ FoundCheckpoint find_checkpoint(const std::string& path, const std::string& prev
       trouble = e.what();
     }
   }
-  if (!trouble.empty()) throw IoError(path, "no sound checkpoint is left (" + trouble + ")");
+  if (!trouble.empty()) throw IoError(path, "no intact checkpoint is left (" + trouble + ")");
   return found;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// checkpoint.h5: the state of a run, so that it can go on later with the same bits.
+// checkpoint.h5: the state of a run, from which it continues with bitwise the same results.
 
 #include <memory>
 #include <string>
@@ -19,7 +19,7 @@ class CheckpointWriter final : public StateFileWriter {
       : StateFileWriter(checkpoint_kind(), expected_bytes) {}
 };
 
-/// Gives it back. Throws as StateFileReader.
+/// Restores the state. Throws as StateFileReader.
 class CheckpointReader final : public StateFileReader {
  public:
   explicit CheckpointReader(const std::string& path) : StateFileReader(checkpoint_kind(), path) {}
@@ -31,7 +31,7 @@ class CheckpointReader final : public StateFileReader {
 struct FoundCheckpoint {
   std::unique_ptr<CheckpointReader> reader;  ///< null when there is none at all
   std::string path;
-  std::vector<std::string> warnings;  ///< what was wrong with a newer one
+  std::vector<std::string> warnings;  ///< the defect of a newer one
 };
 
 /// Opens `path`, or `previous` when that is missing or damaged. Throws IoError when there are

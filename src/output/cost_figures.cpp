@@ -74,7 +74,8 @@ std::string render_forecast(const Forecast& f, double resolution) {
   };
   for (const LadderRung& r : f.ladder) {
     if (!own && r.resolution < resolution) own_row();
-    out += row(r.resolution, r.figures, r.threads, r.fits ? "" : "  more memory than there is");
+    out +=
+        row(r.resolution, r.figures, r.threads, r.fits ? "" : "  more than the available memory");
   }
   if (!own) own_row();
   return out;

@@ -1,6 +1,5 @@
 #pragma once
-// What a run is expected to cost, and what it did cost: as text, and as JSON for `check --json` and
-// summary.json.
+// Forecast and actual cost of a run: as text, and as JSON for `check --json` and summary.json.
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -13,14 +12,14 @@
 
 namespace sphgeo {
 
-/// The price of a run.
+/// The cost of a run.
 struct RunFigures {
   std::vector<std::pair<std::string, Index>> particles;  ///< by set, at the start
   std::uint64_t memory_bytes = 0;                        ///< at the peak, of the whole process
   std::uint64_t disk_bytes = 0;                          ///< of the run folder at the end
   Index advection_steps = 0, acoustic_steps = 0;
   std::optional<double> wall_s;  ///< none without a calibration
-  Index entering = 0;            ///< particles that inlets bring in until the end
+  Index entering = 0;            ///< particles that inlets insert until the end
 
   Index total_particles() const;
 };

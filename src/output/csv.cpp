@@ -65,8 +65,8 @@ CsvWriter CsvWriter::resume(const std::string& path, const std::string& title,
   const std::string head = csv_head(title, columns);
   const std::string text = read_file(path);
   if (text.size() < offset)
-    throw IoError(path,
-                  fmt::format("{} bytes, but the checkpoint has seen {}", text.size(), offset));
+    throw IoError(
+        path, fmt::format("{} bytes, but the checkpoint was written at {}", text.size(), offset));
   if (offset < head.size() || !text.starts_with(head))
     throw IoError(path, "its columns are not those of this run");
   if (text[offset - 1] != '\n') throw IoError(path, "changed since the checkpoint was written");

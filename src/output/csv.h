@@ -1,5 +1,5 @@
 #pragma once
-// Rows of numbers, written while a run goes on.
+// Rows of numbers, written during a run.
 
 #include <chrono>
 #include <cstdint>

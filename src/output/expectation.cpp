@@ -16,7 +16,7 @@ namespace sphgeo {
 
 namespace {
 
-/// A curve that covers less than this share of its reference is not taken for a comparison.
+/// A curve that covers less than this fraction of its reference is not compared.
 constexpr double least_coverage = 0.5;
 
 /// "front" or "front.x": the probe and its column; a probe's own name may hold dots.
@@ -51,7 +51,7 @@ void measure_curve(const Expect& e, Samples samples, ExpectResult& result) {
   for (double& v : samples.y) v = (v + e.shift) / e.scale;
   for (double& v : x) v = v * e.x_scale + e.x_shift;
   for (double& v : y) v *= e.y_scale;
-  for (double& v : x)  // a point outside of the window takes no part, not even in the range
+  for (double& v : x)  // a point outside of the window is ignored, also for the range
     if ((e.from && v < *e.from) || (e.to && v > *e.to)) v = std::nan("");
   const std::optional<CurveDifference> d = compare_curve(samples, x, y);
   if (!d) {
@@ -113,7 +113,7 @@ ExpectResult evaluate(const Expect& e, const SeriesLookup& series) {
   try {
     if (e.reduce == "curve") measure_curve(e, samples, result);
     else measure_number(e, samples, result);
-  } catch (const Error& error) {  // the results of the run must not be lost with its reference
+  } catch (const Error& error) {  // an unreadable reference must not discard the results of the run
     result.note = error.what();
   }
   judge(e, result);

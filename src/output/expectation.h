@@ -1,5 +1,5 @@
 #pragma once
-// Measures what a deck claims (its section `expect`).
+// Measures the claims of a deck (its section `expect`).
 
 #include <functional>
 #include <optional>
@@ -17,8 +17,8 @@ struct ExpectResult {
   std::string name;
   std::optional<double> value;  ///< empty: could not be measured, see note
   std::optional<double> reference;
-  /// What `study` watches: |value - reference| (by |reference| if relative), a curve's norm, the
-  /// value itself for `below`; empty for `above`.
+  /// The error that `study` uses: |value - reference| (by |reference| if relative), a curve's norm,
+  /// the value itself for `below`; empty for `above`.
   std::optional<double> error;
   double tolerance = 0;
   bool pass = false;

@@ -1,5 +1,5 @@
 #pragma once
-// Tells on stderr how far a run is.
+// Progress of a run on stderr.
 
 #include <cstdint>
 #include <iosfwd>
@@ -8,7 +8,7 @@
 
 namespace sphgeo {
 
-/// Where a run stands.
+/// State of a run.
 struct ProgressState {
   double time = 0;      ///< simulated, s
   double end_time = 0;  ///< s
@@ -25,7 +25,7 @@ struct ProgressStyle {
   bool quiet = false;
 };
 
-/// What fits stderr as it is: a bar only on a terminal that is not dumb, no color with NO_COLOR
+/// The style that fits stderr: a bar only on a terminal that is not dumb, no color with NO_COLOR
 /// set.
 ProgressStyle progress_style_of_stderr(bool quiet = false);
 
@@ -35,7 +35,7 @@ class Progress {
  public:
   Progress(std::ostream& out, ProgressStyle style) : out_(out), style_(style) {}
 
-  /// Call as often as you like: draws at most a few times a second.
+  /// May be called in every step: draws at most a few times a second.
   void update(const ProgressState& state);
   /// Prints a line; `what` is added at its end ("frame 12").
   void report(const ProgressState& state, const std::string& what = {});

@@ -14,7 +14,7 @@ class PvdFile {
   explicit PvdFile(std::string path) : path_(std::move(path)) {}
 
   /// Continues the collection that sphgeo wrote earlier, without its frames later than `last_time`
-  /// (s). Throws IoError when the file cannot be read or is none of ours.
+  /// (s). Throws IoError when the file cannot be read or was not written by sphgeo.
   static PvdFile resume(const std::string& path, double last_time);
 
   /// The collection that a file of sphgeo holds. Throws as resume().

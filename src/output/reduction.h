@@ -15,7 +15,7 @@ struct Samples {
 };
 
 /// The samples with support and with from <= t <= to. Values at the very ends of the window are
-/// interpolated, so that a window does not depend on when a sample happened to be taken.
+/// interpolated, so that the result does not depend on the sampling times.
 Samples cut(std::span<const double> t, std::span<const double> y, std::optional<double> from,
             std::optional<double> to);
 
@@ -39,7 +39,7 @@ std::optional<double> interpolate(const Samples& samples, double time);
 /// Empty when there are not two crossings in the same direction.
 std::optional<double> oscillation_period(const Samples& samples);
 
-/// How far a curve is from a table.
+/// Difference of a curve from a table.
 struct CurveDifference {
   double l2 = 0;           ///< root mean square of the difference by the range of the reference
   double max = 0;          ///< largest difference by the range of the reference

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// resolved.yaml goes last: while results are being deleted the folder still names their deck.
+// resolved.yaml last: while results are being deleted the folder still has their deck.
 constexpr std::array own_files = {
     "summary.json", "run.csv",    "checkpoint.h5", "checkpoint.prev.h5",
     "report.html",  "relaxed.h5", "stop",          "resolved.yaml"};
@@ -74,7 +74,7 @@ RunFolder::RunFolder(std::string path, ExistingResults existing) : path_(std::mo
               "another folder with -o",
               path_, old.back().filename().string(),
               old.size() > 1 ? fmt::format(" and {} more files", old.size() - 1) : "",
-              fs::exists(checkpoint()) ? "go on with --resume, " : ""));
+              fs::exists(checkpoint()) ? "continue with --resume, " : ""));
     for (const fs::path& file : old) {
       std::error_code error;
       fs::remove(file, error);

@@ -1,5 +1,5 @@
 #pragma once
-// The folder of a run: where each file lies, and what may be deleted.
+// The folder of a run: its files, and which of them may be deleted.
 
 #include <string>
 
@@ -39,14 +39,14 @@ class RunFolder {
   std::string path_;
 };
 
-/// Keeps every other run out of a folder while it lives; the system lets go of it however a process
-/// ends.
+/// Locks a folder against other runs during its lifetime; the system releases the lock however the
+/// process ends.
 class FolderLock {
  public:
   /// Creates the folder when it is missing. Throws Error (usage) when another run holds it,
   /// IoError.
   explicit FolderLock(const std::string& folder);
-  /// A folder that was made for nothing goes away again.
+  /// An unused new folder is removed again.
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
@@ -60,7 +60,8 @@ class FolderLock {
 /// Whether a folder holds files that a run has written.
 bool holds_results(const std::string& path);
 
-/// A name of the deck as a file name: what is no letter, digit, '.', '_' or '-' becomes %XX.
+/// A name of the deck as a file name: characters other than letters, digits, '.', '_' and '-'
+/// become %XX.
 std::string file_name_of(const std::string& name);
 
 }  // namespace sphgeo

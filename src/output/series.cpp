@@ -38,9 +38,11 @@ void Series::resume(const std::string& path, std::uint64_t offset, double flush_
   }
   for (std::size_t k = 0; k < times_.size(); ++k)
     if (!std::isfinite(times_[k]) || (k > 0 && times_[k] < times_[k - 1]))
-      throw IoError(path, fmt::format("changed since it was written: the time of row {} does not "
-                                      "follow that of the row before",
-                                      k + 1));
+      throw IoError(
+          path,
+          fmt::format(
+              "changed since it was written: the time of row {} is before that of the previous row",
+              k + 1));
 }
 
 void Series::add(double time, std::span<const double> values) {

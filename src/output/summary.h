@@ -1,5 +1,5 @@
 #pragma once
-// summary.json: what a run did, for scripts.
+// summary.json: results of a run, for scripts.
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -21,11 +21,11 @@ struct LedgerRow {
   std::string name;  ///< mass, momentum, energy ...
   std::string unit;
   std::vector<double> initial, final;
-  std::vector<double> exchanged;  ///< what boundaries and gravity brought in; empty = nothing
-  double relative_error = 0;      ///< what is unexplained, by a scale of the run
+  std::vector<double> exchanged;  ///< input by boundaries and gravity; empty = none
+  double relative_error = 0;      ///< unexplained change, over a scale of the run
 };
 
-/// What the guard watched, and what stopped the run.
+/// Quantities watched by the guard, and the reason for a stop.
 struct GuardReport {
   bool tripped = false;
   std::string reason, cause, effect, set;  ///< empty unless tripped; cause is one word
@@ -47,7 +47,7 @@ struct PlanRow {
   std::string stage, name, equations, acts_on, because;
 };
 
-/// All that summary.json holds.
+/// The contents of summary.json.
 struct Summary {
   std::string status;  ///< done, unstable, stopped, failed
   int exit_code = 0;

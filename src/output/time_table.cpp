@@ -13,7 +13,7 @@ std::vector<TimeRow> with_rest(std::vector<TimeRow> rows, double wall_s) {
   });
   double sum = 0;
   for (const TimeRow& r : rows) sum += r.seconds;
-  // The rest may come out below zero when rows were measured twice: it is shown, not hidden.
+  // The rest may be negative when rows were measured twice; it is shown as it is.
   rows.push_back({"rest", 1, wall_s - sum, 0});
   for (TimeRow& r : rows) r.share = wall_s > 0 ? r.seconds / wall_s : 0;
   return rows;
@@ -29,7 +29,7 @@ std::string render_time_table(const std::vector<TimeRow>& rows) {
     const std::string calls = r.name == "rest" ? "" : std::to_string(r.calls);
     out += fmt::format("  {:<{}}  {:>10}  {:>10.3f}  {:>5.1f} %", r.name, width, calls, r.seconds,
                        100 * r.share);
-    // What an effect leaves out is part of what it costs.
+    // The particles that an effect skips are part of its cost.
     if (!r.walked_set.empty())
       out += fmt::format("  {:.3g} % of {}", 100 * r.walked_share, r.walked_set);
     out += '\n';

@@ -1,5 +1,5 @@
 #pragma once
-// Where the time of a run went: one row an effect, and a row for the rest, which adds up.
+// Computing time of a run: one row per effect, and a row for the rest.
 
 #include <cstdint>
 #include <string>
@@ -14,9 +14,9 @@ struct TimeRow {
   std::int64_t calls = 0;
   double seconds = 0;
   double share = 0;
-  std::string walked_set =
-      {};  ///< of which it walks only what is near another set; empty: no such effect
-  double walked_share = 0;  ///< of that set, in 0..1, mean over all calls
+  std::string walked_set = {};  ///< the set of which it loops only over the particles near another
+                                ///< set; empty: no such effect
+  double walked_share = 0;      ///< of that set, in 0..1, mean over all calls
 };
 
 /// Sets the shares, sorts by time (ties by name), drops rows that never ran and appends "rest": the

@@ -197,7 +197,7 @@ VtuFile mesh_file(const VtuPoints& points, int corners_per_cell, std::span<const
   if ((corners_per_cell != 2 && corners_per_cell != 3) || count % corners_per_cell != 0)
     throw std::invalid_argument("a mesh needs 2 or 3 corners a cell");
   for (const Index c : corners)
-    if (c < 0 || c >= points.count()) throw std::invalid_argument("a mesh corner is no point");
+    if (c < 0 || c >= points.count()) throw std::invalid_argument("a mesh corner is not a point");
   return grid_file(
       points, corners_per_cell, count / corners_per_cell,
       [corners](Index i) { return corners[static_cast<std::size_t>(i)]; }, point_fields,

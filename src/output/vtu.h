@@ -24,7 +24,7 @@ struct VtuField {
       data;
 };
 
-/// The places of the points (m): in an array of Vec3, or computed one by one.
+/// The positions of the points (m): in an array of Vec3, or computed one by one.
 class VtuPoints {
  public:
   VtuPoints(std::span<const Vec3> points)  // NOLINT(google-explicit-constructor)
@@ -45,7 +45,7 @@ class VtuPoints {
 enum class VtuPrecision { float32, float64 };
 
 struct VtuOptions {
-  VtuPrecision precision = VtuPrecision::float32;  ///< of places and of fields of double
+  VtuPrecision precision = VtuPrecision::float32;  ///< of positions and of fields of double
   /// Deflate the integer arrays: they shrink to a fraction, while zlib hardly shrinks real numbers,
   /// which therefore stay as they are (stored blocks that VTK's zlib reader understands).
   bool compress = true;
@@ -57,13 +57,12 @@ struct VtuOptions {
 void write_vtu(const std::string& path, const VtuPoints& points,
                const std::vector<VtuField>& fields, const VtuOptions& options = {});
 
-/// Bytes of the file that write_vtu would write. Real numbers of fields are not looked at, only
-/// counted.
+/// Bytes of the file that write_vtu would write. Real numbers of fields are not read, only counted.
 std::uint64_t vtu_bytes(const VtuPoints& points, const std::vector<VtuField>& fields,
                         const VtuOptions& options = {});
 
 /// Writes a surface: `corners` holds the point numbers of each cell, 2 (lines) or 3 (triangles) a
-/// cell. Throws as write_vtu does, std::invalid_argument also for a corner that is no point.
+/// cell. Throws as write_vtu does, std::invalid_argument also for a corner that is not a point.
 void write_vtu_mesh(const std::string& path, const VtuPoints& points, int corners_per_cell,
                     std::span<const Index> corners, const std::vector<VtuField>& point_fields,
                     const std::vector<VtuField>& cell_fields, const VtuOptions& options = {});

@@ -16,7 +16,7 @@ namespace sphgeo {
 
 namespace {
 
-/// No block deflates to less than this share of its size.
+/// No block deflates to less than this fraction of its size.
 constexpr std::uint64_t most_deflation = 1032;
 
 /// One tag of the head with its attributes, as it stands in the text.
@@ -34,7 +34,7 @@ class Head {
     constexpr std::string_view mark = "<AppendedData encoding=\"raw\">\n_";
     const auto end = file.find(mark);
     if (!file.starts_with("<?xml") || end == std::string_view::npos)
-      fail("is no frame of sphgeo: it has no appended raw data");
+      fail("is not a frame of sphgeo: it has no appended raw data");
     text_ = file.substr(0, end);
     data_ = file.substr(end + mark.size());
   }
@@ -75,7 +75,7 @@ class Head {
     std::uint64_t value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc{} || end != text.data() + text.size())
-      fail(fmt::format("is damaged: '{}' is no number", shortened(printable(text), 40)));
+      fail(fmt::format("is damaged: '{}' is not a number", shortened(printable(text), 40)));
     return value;
   }
 
@@ -109,7 +109,7 @@ struct Layout {
 constexpr std::string_view sections[] = {"PointData", "CellData", "Points", "Cells"};
 
 void read_file_tag(const Head& head, const Tag& tag, Layout& layout) {
-  if (head.needed(tag, "type") != "UnstructuredGrid") head.fail("is no unstructured grid");
+  if (head.needed(tag, "type") != "UnstructuredGrid") head.fail("is not an unstructured grid");
   if (head.needed(tag, "byte_order") != "LittleEndian" ||
       head.needed(tag, "header_type") != "UInt64")
     head.fail("was not written by sphgeo: another byte order, or another type of the sizes");
@@ -139,7 +139,7 @@ Layout layout_of(const Head& head) {
       const auto [end, error] =
           std::from_chars(tag->after.data(), tag->after.data() + tag->after.size(), time);
       if (error != std::errc{} || end != tag->after.data() + tag->after.size())
-        head.fail("is damaged: its time is no number");
+        head.fail("is damaged: its time is not a number");
       layout.time = time;
     } else if (tag->is("DataArray")) {
       if (head.needed(*tag, "format") != "appended")
@@ -276,7 +276,7 @@ void read_corners(const Head& head, Arrays& arrays, const ArrayPlace* connectivi
   frame.corners.reserve(numbers.size());
   for (const double c : numbers) {
     if (!(c >= 0 && c < static_cast<double>(layout.points)))
-      head.fail("is damaged: the corner of a cell is no point");
+      head.fail("is damaged: the corner of a cell is not a point");
     frame.corners.push_back(static_cast<Index>(c));
   }
 }

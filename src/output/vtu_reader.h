@@ -37,15 +37,14 @@ struct VtuFrame {
 };
 
 struct VtuReading {
-  /// Which fields to keep; empty: all. Places, time and corners are always read.
+  /// Which fields to keep; empty: all. Positions, time and corners are always read.
   std::function<bool(const std::string& name)> wanted;
   /// A larger file, or one that would take more memory, is refused.
   std::uint64_t most_bytes = std::uint64_t{8} << 30;
 };
 
 /// Reads a .vtu file of sphgeo. Throws IoError with the path when it cannot be read, was written by
-/// another program (by another form of the format, that is), or is damaged: what it says of its
-/// sizes is not believed.
+/// another program (by another form of the format, that is), or is damaged: its sizes are verified.
 VtuFrame read_vtu(const std::string& path, const VtuReading& reading = {});
 
 /// The names, units and components of the point fields, without their values. Throws as read_vtu.

@@ -6,11 +6,11 @@
 namespace sphgeo {
 namespace {
 
-/// How much of a set there is.
+/// Number, mass and volume of a set.
 struct AmountProbe final : Probe {
   std::string set = "water";
 
-  // What tells the volume of the phase itself.
+  // Field that gives the volume of the phase itself.
   const FieldSpec* own_field() const {
     return set == "water" ? &fields::density : set == "soil" ? &fields::volume_fraction : nullptr;
   }
@@ -24,10 +24,10 @@ struct AmountProbe final : Probe {
     const bool flat = model.dimension == 2;
     return {{"mass", flat ? "kg/m" : "kg", "mass"},
             {"volume", flat ? "m2" : "m3",
-             "sum of the particles' volumes; of water in soil that of the mixture it stands for"},
+             "sum of the particles' volumes; for water in soil that of the mixture"},
             {"count", "1", "number of particles"},
             {"own_volume", flat ? "m2" : "m3",
-             "sum of m / rho: of water without the soil it is in, of soil without pores"}};
+             "sum of m / rho: of water without the soil, of soil without the pores"}};
   }
   std::vector<FieldRequest> needs(const Model&) const override {
     std::vector<FieldRequest> out{{set, &fields::mass}, {set, &fields::volume}};

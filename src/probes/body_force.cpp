@@ -10,7 +10,7 @@
 namespace sphgeo {
 namespace {
 
-/// Forces and torques on one solid, by what exerts them.
+/// Forces and torques on one solid by water, soil and contact.
 struct BodyForceProbe final : Probe {
   std::string body;
 

@@ -9,7 +9,7 @@
 namespace sphgeo {
 namespace {
 
-/// Shape of a heap: how far it reaches, how high it is, how steep.
+/// Run-out, height and slope of a heap.
 struct DepositProbe final : Probe {
   std::string set = "soil";
   Vec3 origin = Vec3::Zero();
@@ -21,7 +21,7 @@ struct DepositProbe final : Probe {
                            "run-out, height and slope of a heap that is connected to its origin");
     s.optional("set", &DepositProbe::set, unit::none, "the particle set");
     s.optional("origin", &DepositProbe::origin, unit::length,
-               "where distances start; its z is the base of heights");
+               "origin of distances; its z is the base of heights");
     s.optional("direction", &DepositProbe::direction, unit::none,
                "horizontal direction of the distances")
         .keep_y();
@@ -39,8 +39,8 @@ struct DepositProbe final : Probe {
   }
   std::vector<Column> columns(const Model&) const override {
     return {{"runout", "m",
-             "distance from the origin up to which the heap is connected and thicker than one "
-             "layer of particles"},
+             "run-out: distance from the origin up to which the heap is connected and thicker than "
+             "one layer of particles"},
             {"crest", "m", "largest height of the connected heap over the base"},
             {"height", "m", "height over the origin"},
             {"slope_angle", "deg",
@@ -55,9 +55,9 @@ struct DepositProbe final : Probe {
     if (!scene.has_set(set) || scene.size(set) == 0) return;
     const auto x = scene.vector(set, fields::position);
     const double dp = scene.spacing(set), width = bin_width * dp;
-    // The highest and the farthest particle in rings (strips) of 1.5 spacings. Grains that run
-    // ahead one by one are no part of the heap: around a particle of the heap its set fills two
-    // thirds of the kernel. One layer of particles fills 0.58 of it, two layers 0.79.
+    // The highest and the farthest particle in rings (strips) of 1.5 spacings. Isolated grains
+    // ahead of the front are not part of the heap: around a particle of the heap its set fills at
+    // least two thirds of the kernel. One layer of particles fills 0.58 of it, two layers 0.79.
     const double volume = std::pow(dp, scene.dimension());
     struct Bin {
       double height = -INFINITY, reach = -INFINITY;
@@ -76,8 +76,8 @@ struct DepositProbe final : Probe {
       bins[k].height = std::max(bins[k].height, d.z() + 0.5 * dp);
       bins[k].reach = std::max(bins[k].reach, at + 0.5 * dp);
     }
-    // Between planes of symmetry their walls cut the kernel: the heap begins with the first ring or
-    // the second.
+    // Walls at planes of symmetry truncate the kernel: the heap begins with the first ring or the
+    // second.
     const std::size_t begin = bins.size() > 1 && !std::isfinite(bins[0].height) ? 1 : 0;
     std::size_t connected = begin;
     while (connected < bins.size() && std::isfinite(bins[connected].height)) ++connected;

@@ -17,8 +17,7 @@ struct EnergyProbe final : Probe {
                           "kinetic, potential and internal energy of water, soil or solids");
     s.optional("set", &EnergyProbe::set, unit::none, "the particle set")
         .choices({"water", "soil", "solids"});
-    s.optional("body", &EnergyProbe::body, unit::none,
-               "of solids: the one body to look at; empty: all of them");
+    s.optional("body", &EnergyProbe::body, unit::none, "for solids: the body; empty: all solids");
     s.check([](EnergyProbe& p, CheckContext& c) {
       if (!p.body.empty() && p.set != "solids")
         c.error("body", "'body' has no meaning for the " + p.set,
@@ -38,7 +37,7 @@ struct EnergyProbe final : Probe {
       columns.push_back(
           {"contact", unit, "energy stored in contacts, part of the internal energy"});
     if (set == "soil")
-      columns.push_back({"dissipated", unit, "energy dissipated by plastic flow so far"});
+      columns.push_back({"dissipated", unit, "energy dissipated by plastic flow since t = 0"});
     return columns;
   }
   void inspect(const Model& model, CheckContext& c) const override {

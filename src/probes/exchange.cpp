@@ -9,14 +9,14 @@
 namespace sphgeo {
 namespace {
 
-/// What has crossed a boundary.
+/// Particles and mass that have crossed a boundary.
 struct ExchangeProbe final : Probe {
   std::string boundary;
 
   static Schema<ExchangeProbe> schema() {
-    Schema<ExchangeProbe> s("exchange",
-                            "particles and mass that have come in or gone out through an inlet, a "
-                            "reservoir or an outlet");
+    Schema<ExchangeProbe> s(
+        "exchange",
+        "particles and mass that have entered or left through an inlet, a reservoir or an outlet");
     s.required("boundary", &ExchangeProbe::boundary, unit::none, "the name of the boundary");
     return s;
   }
@@ -25,15 +25,15 @@ struct ExchangeProbe final : Probe {
     for (const auto& b : model.boundaries)
       if (dynamic_cast<const ExchangeBoundary*>(b.get())) names.push_back(b->name);
     if (std::find(names.begin(), names.end(), boundary) == names.end())
-      c.error("boundary", "nothing crosses a boundary '" + boundary + "'",
+      c.error("boundary", "there is no inlet, reservoir or outlet '" + boundary + "'",
               names.empty() ? "the deck has no inlet, reservoir or outlet"
                             : suggestion(boundary, names, "boundaries that particles cross"));
   }
   std::vector<Column> columns(const Model& model) const override {
     const char* kg = model.dimension == 2 ? "kg/m" : "kg";
-    return {{"entered", "1", "particles that have come in so far"},
-            {"left", "1", "particles that have gone out so far"},
-            {"mass", kg, "mass that has come in so far, less what has gone out"}};
+    return {{"entered", "1", "particles that have entered since t = 0"},
+            {"left", "1", "particles that have left since t = 0"},
+            {"mass", kg, "mass that has entered since t = 0 minus the mass that has left"}};
   }
   std::vector<FieldRequest> needs(const Model&) const override { return {}; }
 

@@ -23,9 +23,9 @@ struct FluxProbe final : Probe {
                "normal of the plane; flow along it counts positive")
         .keep_y();
     s.optional("region_min", &FluxProbe::region_min, unit::length,
-               "lower corner of the region that counts");
+               "lower corner of the region considered");
     s.optional("region_max", &FluxProbe::region_max, unit::length,
-               "upper corner of the region that counts");
+               "upper corner of the region considered");
     s.check([](FluxProbe& p, CheckContext& c) {
       if (!(p.normal.norm() > 0))
         c.error("normal", "the normal has no length", "give a vector that is not zero");

@@ -8,21 +8,21 @@
 namespace sphgeo {
 namespace {
 
-/// How far the particles of a set have come in a direction.
+/// Front position of a set in a direction.
 struct FrontProbe final : Probe {
   std::string set = "water";
   Vec3 direction = Vec3::UnitX();
   std::optional<Vec3> region_min, region_max;
 
   static Schema<FrontProbe> schema() {
-    Schema<FrontProbe> s("front", "foremost place of a set in a direction");
+    Schema<FrontProbe> s("front", "front position of a set in a direction");
     s.optional("set", &FrontProbe::set, unit::none, "the particle set");
     s.optional("direction", &FrontProbe::direction, unit::none, "the direction, of any length")
         .keep_y();
     s.optional("region_min", &FrontProbe::region_min, unit::length,
-               "lower corner of the region that counts");
+               "lower corner of the region considered");
     s.optional("region_max", &FrontProbe::region_max, unit::length,
-               "upper corner of the region that counts");
+               "upper corner of the region considered");
     s.check([](FrontProbe& p, CheckContext& c) {
       if (!(p.direction.norm() > 0))
         c.error("direction", "the direction has no length", "give a vector that is not zero");
@@ -31,7 +31,8 @@ struct FrontProbe final : Probe {
     return s;
   }
   std::vector<Column> columns(const Model&) const override {
-    return {{"position", "m", "foremost particle along the direction, plus half a spacing"}};
+    return {{"position", "m",
+             "position of the foremost particle along the direction, plus half a spacing"}};
   }
   std::vector<FieldRequest> needs(const Model&) const override {
     return {{set, &fields::position}};

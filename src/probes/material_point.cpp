@@ -14,12 +14,12 @@ struct MaterialPointProbe final : Probe {
   Vec3 at = Vec3::Zero();
 
   static Schema<MaterialPointProbe> schema() {
-    Schema<MaterialPointProbe> s("material_point",
-                                 "displacement and velocity of a point of a solid, named by its "
-                                 "place at rest; a linear fit to the particles around it there");
+    Schema<MaterialPointProbe> s(
+        "material_point",
+        "displacement and velocity of a material point of a solid, given by its reference "
+        "position; a linear fit to the particles around it");
     s.required("body", &MaterialPointProbe::body, unit::none, "name of the body");
-    s.required("at", &MaterialPointProbe::at, unit::length,
-               "the point at t = 0, before any motion");
+    s.required("at", &MaterialPointProbe::at, unit::length, "position of the point at t = 0");
     return s;
   }
   std::vector<Column> columns(const Model& model) const override {
@@ -63,7 +63,7 @@ struct MaterialPointProbe final : Probe {
       ++count;
     }
     if (count < scene.dimension() + 1) return;
-    if (scene.dimension() == 2) moment(2, 2) += 1;  // nothing varies across the plane
+    if (scene.dimension() == 2) moment(2, 2) += 1;  // no variation normal to the plane
     const Eigen::FullPivLU<Eigen::Matrix4d> inverse(moment);
     const Eigen::Matrix<double, 1, 6> fit =
         inverse.rcond() > 1e-6 ? Eigen::Matrix<double, 1, 6>(inverse.solve(right).row(0))

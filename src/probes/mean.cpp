@@ -18,7 +18,7 @@ const FieldSpec* scalar_field(const std::string& name) {
   return nullptr;
 }
 
-/// Mean, least and largest value of a field over the particles in a region.
+/// Mean, smallest and largest value of a field over the particles in a region.
 struct MeanProbe final : Probe {
   std::string set = "water";
   std::string field;
@@ -26,20 +26,21 @@ struct MeanProbe final : Probe {
 
   static Schema<MeanProbe> schema() {
     Schema<MeanProbe> s(
-        "mean", "mean, least and largest value of a scalar field over the particles in a region");
+        "mean",
+        "mean, smallest and largest value of a scalar field over the particles in a region");
     s.optional("set", &MeanProbe::set, unit::none, "the particle set");
     s.required("field", &MeanProbe::field, unit::none, "the scalar field");
     s.optional("region", &MeanProbe::region, unit::none, "the region; auto: everywhere");
     s.optional("over", &MeanProbe::over, unit::none,
-               "a second region, to whose mean 'ratio' compares; auto: no ratio");
+               "a second region, whose mean is the denominator of 'ratio'; auto: no ratio");
     return s;
   }
   std::vector<Column> columns(const Model&) const override {
     const FieldSpec* f = scalar_field(field);
     const std::string in = f ? f->unit.symbol : "1";
     std::vector<Column> out{
-        {"mean", in, "mean over the particles in the region; empty where there is none"},
-        {"least", in, "least value"},
+        {"mean", in, "mean over the particles in the region; empty without particles"},
+        {"least", in, "smallest value"},
         {"largest", in, "largest value"},
         {"count", "1", "number of particles in the region"}};
     if (over) out.push_back({"ratio", "1", "mean over the mean in the second region"});

@@ -10,22 +10,23 @@
 namespace sphgeo {
 namespace {
 
-/// How deep a solid lies within other solids and walls. A surface is taken half a spacing outside
-/// of the outermost particles, and its normal points away from the particles around: so it holds
-/// for bodies that turn and bend.
+/// Penetration depth of a solid in other solids and walls. A surface lies half a spacing outside of
+/// the outermost particles, and its normal points away from the surrounding particles; this holds
+/// also for bodies that rotate and bend.
 struct PenetrationProbe final : Probe {
   std::string body;
 
   static Schema<PenetrationProbe> schema() {
-    Schema<PenetrationProbe> s("penetration",
-                               "how deep the surface of a solid lies within other solids or walls; "
-                               "surfaces are half a spacing outside of the outermost particles");
+    Schema<PenetrationProbe> s(
+        "penetration",
+        "penetration depth of the surface of a solid in other solids or walls; surfaces lie half a "
+        "spacing outside of the outermost particles");
     s.optional("body", &PenetrationProbe::body, unit::none,
-               "name of the body; empty: the deepest of all solids");
+               "name of the body; empty: the largest of all solids");
     return s;
   }
   std::vector<Column> columns(const Model&) const override {
-    return {{"depth", "m", "largest depth; 0 where nothing is touched"},
+    return {{"depth", "m", "largest depth; 0 without contact"},
             {"spacings", "1", "the same over the mean spacing of the two particles"}};
   }
   void inspect(const Model& model, CheckContext& c) const override {
@@ -96,7 +97,7 @@ struct PenetrationProbe final : Probe {
 
   /// Distance between the outermost particles of two patches, negative when they overlap: as for
   /// convex bodies the largest of several directions: the normals of both, and the one between
-  /// these. Only what lies near one line along a direction counts.
+  /// these. Only particles near one line along a direction are considered.
   static double gap(const Patch& a, const Patch& b, const Vec3& point, double spacing,
                     int dimension) {
     const Vec3 middle = 0.5 * (point + b.place);

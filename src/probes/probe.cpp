@@ -34,7 +34,7 @@ PointFit::PointFit(const SceneView& scene, const std::string& set, const Vec3& a
     support_ += kernel.back();
     mean += kernel.back() * offset.back();
   });
-  // A few particles at the rim of the kernel are no measurement.
+  // A few particles at the edge of the kernel support are not sufficient for a measurement.
   if (particles_.size() < 3 || support_ < 0.15) return;
   supported_ = true;
   mean /= support_;

@@ -18,13 +18,13 @@ struct FieldRequest {
   const FieldSpec* field;
 };
 
-/// A measurement that a deck asks for. Empty values mean that there is nothing to measure there.
+/// A measurement requested by a deck. Empty values mean that no particles support it.
 struct Probe : ProbeSpec {
   virtual std::vector<Column> columns(const Model& model) const = 0;
   virtual std::vector<FieldRequest> needs(const Model& model) const = 0;
   /// One value per column.
   virtual void sample(const SceneView& scene, std::span<std::optional<double>> out) const = 0;
-  /// Reports what is wrong with the probe in this deck, such as an unknown name.
+  /// Reports errors of the probe in this deck, such as an unknown name.
   virtual void inspect(const Model&, CheckContext&) const {}
   /// Points that should lie inside the scene, for `check`.
   virtual std::vector<Vec3> places() const { return {}; }
@@ -43,7 +43,7 @@ class PointFit {
  public:
   /// Collects the particles of `set` around the point.
   PointFit(const SceneView& scene, const std::string& set, const Vec3& at);
-  /// Whether enough of the set is around the point to say anything.
+  /// Whether enough of the set is around the point for an estimate.
   bool supported() const { return supported_; }
   /// Share of the kernel that the set fills: about 1 inside, 1/2 on a wall or surface.
   double support() const { return support_; }

@@ -1,5 +1,5 @@
 #pragma once
-// What a probe may ask of a running scene, without knowing its dimension.
+// Read access of probes to a running scene, without its dimension.
 
 #include <functional>
 #include <string>
@@ -11,10 +11,10 @@
 
 namespace sphgeo {
 
-/// What has crossed a boundary so far.
+/// Particles and mass that have crossed a boundary since t = 0.
 struct Crossings {
   double entered = 0, left = 0;  ///< particles
-  double mass = 0;               ///< that came in, less what went out, kg; per metre of depth in 2D
+  double mass = 0;               ///< inflow minus outflow, kg; per metre of depth in 2D
 };
 
 /// Read-only view of all particle sets at one moment; vectors have y = 0 in 2D.
@@ -41,7 +41,7 @@ class SceneView {
   /// Calls f(i, W) for all particles of the set whose kernel reaches the point; W in 1/m^d.
   virtual void near(const std::string& set, const Vec3& at,
                     const std::function<void(Index, double)>& f) const = 0;
-  /// All zero for a boundary that nothing crosses.
+  /// All zero for a boundary that is not an open one.
   virtual Crossings crossings(const std::string& boundary) const = 0;
   /// The box of the scene, m.
   virtual Aabb domain() const = 0;

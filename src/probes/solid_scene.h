@@ -1,5 +1,5 @@
 #pragma once
-// Solids as probes see them: by body, whichever set holds it.
+// Access of probes to solids by body, independent of the set that holds it.
 
 #include <functional>
 #include <string>
@@ -26,12 +26,12 @@ inline std::string set_of_body(const Model& model, const std::string& name) {
   return set.empty() ? "solids" : set;
 }
 
-/// Reports a body that is no solid of the deck.
+/// Reports a body that is not a solid of the deck.
 inline void inspect_body(const Model& model, const std::string& name, const char* key,
                          CheckContext& c) {
   const std::int32_t b = body_index(model, name);
   if (b >= 0 && !solid_set_of(model, static_cast<std::size_t>(b)).empty()) return;
-  c.error(key, b < 0 ? "there is no body '" + name + "'" : "body '" + name + "' is no solid",
+  c.error(key, b < 0 ? "there is no body '" + name + "'" : "body '" + name + "' is not a solid",
           "name a body whose material is elastic or rigid");
 }
 

@@ -29,7 +29,7 @@ struct StressProbe final : Probe {
             {"pressure", "Pa", "mean effective pressure, compression positive"},
             {"deviator", "Pa", "sqrt(3 J2)"},
             {"plastic_strain", "1", "equivalent plastic strain"},
-            {"volume_fraction", "1", "share of the grains in the volume"},
+            {"volume_fraction", "1", "volume fraction of the grains"},
             {"support", "1", "share of the kernel filled with soil"}};
   }
   std::vector<FieldRequest> needs(const Model&) const override {

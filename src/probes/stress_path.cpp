@@ -9,7 +9,7 @@
 namespace sphgeo {
 namespace {
 
-/// One material point of soil, led through a path of deformation without any particle.
+/// One material point of soil on a prescribed deformation path, without particles.
 struct StressPathProbe final : Probe {
   std::string material;
   std::string path;
@@ -21,13 +21,13 @@ struct StressPathProbe final : Probe {
   static Schema<StressPathProbe> schema() {
     Schema<StressPathProbe> s(
         "stress_path",
-        "a material point of soil led through a path of deformation, without particles");
+        "a material point of soil on a prescribed deformation path, without particles");
     s.required("material", &StressPathProbe::material, unit::none,
                "name of a material of type soil");
     s.required("path", &StressPathProbe::path, unit::none,
-               "oedometric: compression along z with fixed sides; triaxial: with sides under the "
-               "initial pressure; simple_shear: "
-               "dv_x/dz; gradient: as given")
+               "oedometric: compression along z without lateral strain; triaxial: with constant "
+               "lateral stress; simple_shear: "
+               "dv_x/dz; gradient: the given velocity gradient")
         .choices({"oedometric", "triaxial", "simple_shear", "gradient"});
     s.optional("rate", &StressPathProbe::rate, unit::rate, "rate of compression or shear");
     s.optional("step", &StressPathProbe::step, unit::time, "time step of the stress update")
@@ -54,8 +54,8 @@ struct StressPathProbe final : Probe {
             {"pressure", "Pa", "mean pressure, compression positive"},
             {"root_j2", "Pa", "sqrt(J2)"},
             {"outside", "1",
-             "largest distance from the yield surface so far, outside of it, in parts of k_c or of "
-             "the mean pressure"},
+             "largest distance outside of the yield surface since t = 0, over k_c or the mean "
+             "pressure"},
             {"plastic_strain", "1", "equivalent plastic strain"},
             {"plastic_work", "J/m3", "plastic work per volume"}};
   }
@@ -102,9 +102,9 @@ struct StressPathProbe final : Probe {
     if (path == "gradient")
       for (std::size_t k = 0; k < 9; ++k) g[k / 3][k % 3] = (*gradient)[k](Vec3::Zero(), t);
   }
-  // The rate at which the sides give way so that their stress stays, by bisection: the stress after
-  // the step grows with it. Between no volume change of a dilating soil and no lateral strain at
-  // all.
+  // The lateral strain rate that keeps the lateral stress constant, by bisection: the stress after
+  // the step grows with it. The bracket is from no volume change of a dilating soil to no lateral
+  // strain.
   double lateral_rate(const DruckerPrager<double>& m, const double (&s)[6]) const {
     double lo = -std::abs(rate), hi = 10 * std::abs(rate);
     for (int n = 0; n < 80; ++n) {

@@ -11,7 +11,7 @@
 
 namespace sphgeo {
 
-/// Height of the topmost surface of the set above each place (z is ignored); empty where there is
+/// Height of the topmost surface of the set at each position (z is ignored); empty where there is
 /// none.
 inline std::vector<std::optional<double>> surface_heights(const SceneView& scene,
                                                           const std::string& set,

@@ -25,7 +25,7 @@ struct SurfaceProfileProbe final : Probe {
                "start of the line; its z is ignored");
     s.required("to", &SurfaceProfileProbe::to, unit::length, "end of the line; its z is ignored");
     s.optional("points", &SurfaceProfileProbe::points, unit::none,
-               "number of places, both ends included")
+               "number of points, both ends included")
         .at_least(2)
         .at_most(1000);
     return s;
@@ -40,7 +40,8 @@ struct SurfaceProfileProbe final : Probe {
                        at.x(), at.y())});
     }
     columns.push_back({"slope_angle", "deg",
-                       "slope of the line that fits the heights best, rising from start to end"});
+                       "slope of the least-squares line through the heights, positive when rising "
+                       "from start to end"});
     return columns;
   }
   std::vector<FieldRequest> needs(const Model&) const override { return {{set, &fields::volume}}; }

@@ -18,7 +18,7 @@ struct VelocityProbe final : Probe {
     return s;
   }
   std::vector<Column> columns(const Model& model) const override {
-    return vector_columns(model, "v", unit::speed, "velocity; empty where there is nothing");
+    return vector_columns(model, "v", unit::speed, "velocity; empty without particles");
   }
   std::vector<FieldRequest> needs(const Model&) const override {
     return {{set, &fields::velocity}, {set, &fields::volume}};

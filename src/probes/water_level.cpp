@@ -6,21 +6,23 @@
 namespace sphgeo {
 namespace {
 
-/// Height of the free surface above a place: where the kernel sum of the water falls to one half.
+/// Height of the free surface at a horizontal position: where the kernel sum of the water falls to
+/// one half.
 struct WaterLevelProbe final : Probe {
   Vec3 at = Vec3::Zero();
   std::optional<Vec3> minus;
 
   static Schema<WaterLevelProbe> schema() {
-    Schema<WaterLevelProbe> s("water_level", "height of the topmost water surface at a place");
-    s.required("at", &WaterLevelProbe::at, unit::length, "the place; its z is ignored");
+    Schema<WaterLevelProbe> s("water_level",
+                              "height of the topmost water surface at a horizontal position");
+    s.required("at", &WaterLevelProbe::at, unit::length, "the position; its z is ignored");
     s.optional("minus", &WaterLevelProbe::minus, unit::length,
-               "a second place, whose level 'difference' takes off; auto: no difference");
+               "a second position, whose level is subtracted in 'difference'; auto: no difference");
     return s;
   }
   std::vector<Column> columns(const Model&) const override {
     std::vector<Column> out{{"level", "m", "z of the free surface; empty where there is no water"}};
-    if (minus) out.push_back({"difference", "m", "level less that at the second place"});
+    if (minus) out.push_back({"difference", "m", "level minus the level at the second position"});
     return out;
   }
   std::vector<FieldRequest> needs(const Model&) const override {

@@ -13,7 +13,7 @@ namespace sphgeo {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-/// A mark this near to an end, by the distance of marks, stands on it.
+/// A mark nearer to an end than this fraction of the mark distance lies on it.
 constexpr double nearness = 1e-6;
 
 /// The smallest of 1, 2, 5, 10 times a power of ten that is not below `least`.
@@ -69,7 +69,7 @@ AxisScale::AxisScale(const ChartAxis& axis, double low, double high, int most_ti
     ticks_ = log_ticks(low_, high_, most_ticks);
     return;
   }
-  // A constant deserves a scale of its own size, not one of its rounding errors.
+  // A constant gets a scale of its own magnitude, not of its round-off.
   const double span = std::max(high - low, 1e-9 * std::max(std::abs(low), std::abs(high)));
   const double margin = span > 0 ? 0.04 * span : 0.5;
   const bool flat = !(high - low > 1e-9 * std::max(std::abs(low), std::abs(high)));

@@ -1,5 +1,5 @@
 #pragma once
-// Axes of charts: where the marks are, and what stands at them.
+// Axes of charts: positions and texts of the marks.
 
 #include <optional>
 #include <string>
@@ -22,7 +22,7 @@ std::vector<double> linear_ticks(double low, double high, int most = 6);
 /// many), and 2 and 5 times them where the axis spans less than two decades.
 std::vector<double> log_ticks(double low, double high, int most = 7);
 
-/// An axis with its ends: from values to places along it.
+/// An axis with its ends: from values to positions along it.
 class AxisScale {
  public:
   /// `low` and `high` are the extremes of the data (any when there is none); ends that the axis

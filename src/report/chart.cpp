@@ -20,7 +20,7 @@ constexpr double line_height = 18;
 /// Mean width of a character by the size of the font; a little too wide, so that nothing overlaps.
 constexpr double character = 0.56;
 
-/// Read on white as on near-black; a page may set its own for each.
+/// Legible on white and on near-black; a page may set its own colours.
 constexpr std::array palette{"#2b74b8", "#cf5b22", "#2f9463", "#8d64b5",
                              "#a98612", "#c44d86", "#2499a6", "#7d7f86"};
 
@@ -250,7 +250,7 @@ class Drawing {
     body_ += "</g>\n";
   }
 
-  /// Texts beside points: at the first side where nothing else stands, else nowhere.
+  /// Texts beside points: at the first free side, else none.
   void labels(const ChartCurve& c, const std::string& paint) {
     constexpr double size = 11, away = 7;
     for (std::size_t i = 0; i < c.labels.size(); ++i) {

@@ -45,7 +45,7 @@ Color from_lab(const Lab& c) {
           part(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s), 1};
 }
 
-/// What the map passes through, at equal distances.
+/// Colours of the map at equal distances.
 constexpr std::array anchors{Color{0.20, 0.15, 0.44, 1}, Color{0.17, 0.36, 0.64, 1},
                              Color{0.11, 0.57, 0.62, 1}, Color{0.33, 0.74, 0.45, 1},
                              Color{0.98, 0.88, 0.25, 1}};

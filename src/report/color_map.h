@@ -1,5 +1,5 @@
 #pragma once
-// From numbers to colours: dark blue over green to yellow, evenly for the eye.
+// From numbers to colours: dark blue over green to yellow, perceptually uniform.
 
 #include <string>
 #include <vector>

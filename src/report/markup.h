@@ -24,7 +24,7 @@ std::string number_text(double value, int digits = 4);
 /// 1234567 as "1 234 567", with narrow blanks that do not break.
 std::string count_text(double value);
 
-/// A unit as it is printed: "kg/m³" for "kg/m3"; "" for "1".
+/// A unit as it is shown: "kg/m³" for "kg/m3"; "" for "1".
 std::string unit_text(std::string_view unit);
 
 /// "⁻¹²": an exponent in raised digits.

@@ -1,5 +1,5 @@
 #pragma once
-// What the frames of a run show at one time.
+// The frames of a run at one time.
 
 #include <cstddef>
 #include <functional>

@@ -37,7 +37,7 @@ std::string embedded_summaries(Runs runs) {
 
 std::string page_head(std::string_view title, std::string_view below, std::string_view body_class) {
   const std::string text = html_escaped(title);
-  // Nothing may be loaded and nothing run, whatever a deck says.
+  // The page loads nothing and runs no scripts, whatever a deck contains.
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
@@ -57,7 +57,7 @@ std::string report_page(std::span<const RunRecord> runs) {
   page += section("Expectations", expect_html(runs));
   std::string rest = section("Curves", curves_html(runs, most_chart_bytes));
   rest += section("Conservation", conservation_html(runs));
-  rest += section("Where the time went", time_html(runs));
+  rest += section("Computing time", time_html(runs));
   rest += section("Plan", plan_html(runs));
   rest += section("Deck", deck_html(runs));
   rest += "</main>\n" + embedded_summaries(runs) + "</body>\n</html>\n";

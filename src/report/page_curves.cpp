@@ -58,7 +58,7 @@ ChartAxis time_axis(Runs runs) {
   return axis;
 }
 
-/// How much of the kernel a probe saw: of use beside its values in the file, not as a curve.
+/// Fraction of the kernel that was filled: useful beside the values in the file, not as a curve.
 constexpr std::string_view support_column = "support";
 
 /// The probe and column that a claim names: "front" or "front.x"; a probe's own name may hold dots.
@@ -150,7 +150,7 @@ std::vector<std::string> chosen_columns(const TimeSeries& probe, const std::stri
 /// Columns of one probe that share a unit, in one chart; with several runs a chart a column.
 void add_probe(Runs runs, const std::string& probe, const std::string& unit,
                std::vector<std::string> columns, std::string caption, Charts& charts) {
-  // What is zero all the time, where others are not, is said in words.
+  // Columns that are zero at all times, where others are not, are named in the text.
   const auto zero = [&](const std::string& column) {
     const TimeSeries* series = runs.front().series(probe);
     const NamedColumn* c = series ? series->find(column) : nullptr;
@@ -214,7 +214,7 @@ ChartCurve change_of(const TimeSeries& run, const std::string& column, bool sinc
   return curve;
 }
 
-/// Energies of one run; potential energy has no zero of its own, so that all of them count from the
+/// Energies of one run; potential energy has no natural zero, so that all are changes since the
 /// start.
 void add_energies(Runs runs, const RunRecord& run, Charts& charts) {
   const bool several = runs.size() > 1;

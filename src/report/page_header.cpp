@@ -118,7 +118,7 @@ std::string status_badge(const RunRecord& run) {
                      status.empty() ? "not finished" : html_escaped(status));
 }
 
-/// What the guard says of the place where a run failed.
+/// What the guard reports about the failure of a run.
 std::string guard_sentence(const Json& guard) {
   std::string out;
   const auto add = [&](std::string_view label, const std::string& text) {

@@ -52,8 +52,8 @@ std::string scene_html(Runs runs, const ScenePictures& pictures) {
   }
   if (clipped)
     out +=
-        "<p class=\"quiet\">Colours have the same meaning at all times. The few values beyond the "
-        "ends of a bar take the colour of that end.</p>\n";
+        "<p class=\"quiet\">Colours have the same meaning at all times. Values beyond the ends of "
+        "a bar have the colour of that end.</p>\n";
   return out;
 }
 

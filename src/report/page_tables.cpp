@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t most_rows = 400;      ///< of one table
 constexpr std::size_t most_deck = 250'000;  ///< bytes of a deck's text, over all runs
 
-/// The deck's own words about a claim.
+/// The deck's definition of a claim.
 const Expect* claim(const RunRecord& run, const std::string& name) {
   if (!run.model) return nullptr;
   const auto it = std::find_if(run.model->expect.begin(), run.model->expect.end(),
@@ -137,8 +137,8 @@ std::string expect_html(Runs runs) {
   const bool early = std::any_of(runs.begin(), runs.end(), [](const RunRecord& run) {
     return text_at(run.summary, "/status") != "done";
   });
-  return (early ? "<p class=\"quiet\">A run that did not reach its end was measured as far as it "
-                  "came.</p>\n"
+  return (early ? "<p class=\"quiet\">Results of a run that did not reach its end are those up to "
+                  "its last time.</p>\n"
                 : "") +
          table("", head, rows);
 }
@@ -226,7 +226,7 @@ std::string guard_html(Runs runs) {
   std::string head = "<tr>" + head_cell("extreme over the run");
   for (const RunRecord& run : runs)
     head += head_cell(runs.size() > 1 ? html_escaped(run.label) : "value", "n");
-  return "<h3>What the guard watched</h3>\n" + table("slim", head + "</tr>", rows);
+  return "<h3>Quantities watched by the guard</h3>\n" + table("slim", head + "</tr>", rows);
 }
 
 std::string plan_html(Runs runs) {
@@ -268,7 +268,7 @@ std::string deck_html(Runs runs) {
         "default</summary>\n{}<pre>{}</pre></details>\n",
         runs.size() > 1 ? html_escaped(run.label) + ": " : "",
         cut ? fmt::format("<p class=\"quiet\">The first {} of {}; the file in the run folder is "
-                          "whole.</p>\n",
+                          "complete.</p>\n",
                           bytes_text(static_cast<double>(most)),
                           bytes_text(static_cast<double>(run.deck.size())))
             : "",

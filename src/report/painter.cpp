@@ -24,7 +24,7 @@ constexpr double least_disc = 4;
 
 View view_of(const Aabb& box, int dimension, int most_width, int most_height) {
   if (box.empty() || !(box.hi - box.lo).allFinite())
-    throw std::invalid_argument("a view of an empty or endless box");
+    throw std::invalid_argument("a view of an empty or unbounded box");
   View view;
   view.flat = dimension == 2;
   if (!view.flat) {
@@ -93,8 +93,7 @@ void Painter::set(int column, int row, int color) {
 void Painter::line(const Vec3& a, const Vec3& b, double thickness, int color) {
   double x0 = view_.column(a), y0 = view_.row(a), x1 = view_.column(b), y1 = view_.row(b);
   if (!(std::isfinite(x0) && std::isfinite(y0) && std::isfinite(x1) && std::isfinite(y1))) return;
-  // Only the part in the picture: a wall may be kilometres long. (Liang and Barsky's way of
-  // cutting.)
+  // Only the part in the picture: a wall may be kilometres long (clipping after Liang and Barsky).
   double from = 0, to = 1;
   const double pad = thickness + 1;
   for (const auto& [p, d, low, high] : {std::array{x0, x1 - x0, -pad, view_.width + pad},
@@ -178,8 +177,8 @@ void Painter::mark(const Vec3& at, double radius, int color) {
     }
 }
 
-/// From the light on the ball and from the neighbouring pixels that stand before this one: edges of
-/// what is nearer throw a rim of shade, which tells the eye what is in front.
+/// Shading by the light on the ball and by neighbouring pixels in front of this one: edges of
+/// nearer particles are outlined by a dark rim.
 int Painter::shade_at(int column, int row) const {
   const auto index = [&](int c, int r) {
     return static_cast<std::size_t>(r) * static_cast<std::size_t>(view_.width) +

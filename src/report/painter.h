@@ -28,12 +28,12 @@ struct View {
 /// margin around it. `dimension` 2: the x-z plane; 3: from in front, the right and above.
 View view_of(const Aabb& box, int dimension, int most_width, int most_height);
 
-/// What a picture of a scene shows: its particles, and its walls as far as they reach out by no
-/// more than `reach` times the size of what the particles fill. Either may be empty.
+/// The region of a picture: the particles, and walls up to `reach` times the extent of the
+/// particles beyond them. Either may be empty.
 Aabb picture_box(const Aabb& particles, const Aabb& walls, double reach = 0.5);
 
-/// By how much discs of particles of this spacing (m) should be larger than it: small ones cover
-/// the plane, since gaps of about a pixel make patterns of their own; large ones may be told apart.
+/// Factor of the diameter of discs over this spacing (m): small ones overlap, since gaps of about a
+/// pixel give moire patterns; large ones are shown separately.
 double disc_cover(const View& view, double spacing);
 
 /// Paints into a picture that begins transparent. Colours are numbers in the list given at the
@@ -45,13 +45,13 @@ class Painter {
   Painter(const View& view, std::vector<Color> colors);
 
   /// A straight line, `thickness` pixels wide. In 3D it lies behind all discs, so that the inside
-  /// of a tank is seen.
+  /// of a tank is visible.
   void line(const Vec3& a, const Vec3& b, double thickness, int color);
   /// Discs (balls in 3D) of one diameter (m), each with its colour. `nearer` (m) moves them towards
   /// the eye.
   void discs(std::span<const Vec3> centers, double diameter, std::span<const std::uint8_t> colors,
              double nearer = 0);
-  /// A ring with a dot, above everything: the place of a probe.
+  /// A ring with a dot, in front of everything: the position of a probe.
   void mark(const Vec3& at, double radius, int color);
 
   /// The picture so far.
@@ -72,7 +72,7 @@ class Painter {
   double ball_ = 0;                  ///< largest diameter so far, m
 };
 
-/// The lines of a wall's surface that a draughtsman would draw: of a mesh of lines all, of
+/// The characteristic lines of a wall's surface: of a mesh of lines all, of
 /// triangles those edges that belong to one face or lie between faces at more than 30 degrees. Two
 /// corners each.
 std::vector<std::pair<Index, Index>> outline(std::span<const Vec3> points, int corners_per_cell,

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 
 namespace {
 
-/// More of anything is no result of a run that a page could show.
+/// Larger files are not shown.
 constexpr std::uint64_t most_text = 64 << 20;  // bytes
 
 TimeSeries read_series(const std::string& name, const std::string& path) {
@@ -37,7 +37,7 @@ TimeSeries read_series(const std::string& name, const std::string& path) {
   return series;
 }
 
-/// Calls `read`; what goes wrong becomes a sentence of the record.
+/// Calls `read`; an error becomes a sentence of the record.
 template <class F>
 void attempt(RunRecord& record, const F& read) {
   try {
@@ -112,16 +112,15 @@ RunRecord read_run(const std::string& folder) {
   const std::string deck = folder + "/resolved.yaml", summary = folder + "/summary.json",
                     rows = folder + "/run.csv";
   if (!fs::exists(deck) && !fs::exists(summary))
-    throw IoError(folder,
-                  "is no run folder: there is neither summary.json nor resolved.yaml in it");
+    throw IoError(folder, "is not a run folder: it has neither summary.json nor resolved.yaml");
   if (fs::exists(summary)) {
     attempt(record, [&] {
       Json read = Json::parse(read_file(summary, most_text));
       if (read.is_object()) record.summary = std::move(read);
-      else throw IoError(summary, "is no summary of a run");
+      else throw IoError(summary, "is not a summary of a run");
     });
   } else {
-    record.problems.emplace_back("there is no summary.json: the run goes on, or was killed");
+    record.problems.emplace_back("there is no summary.json: the run is in progress, or was killed");
   }
   if (fs::exists(deck)) {
     attempt(record, [&] { record.deck = read_file(deck, most_text); });

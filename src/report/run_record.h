@@ -1,5 +1,5 @@
 #pragma once
-// What a run folder holds, for pages about runs.
+// The contents of a run folder, for pages about runs.
 
 #include <map>
 #include <nlohmann/json.hpp>

@@ -73,7 +73,7 @@ class Paintings {
     survey();
     quantities_ = known_quantities();
     if (!ranges_.empty()) return;
-    // A deck may write other fields only: any of them is better than none.
+    // A deck may write other fields only: one of them is shown.
     all_fields_ = true;
     reader_ = MomentReader(kept_values, [](const std::string&) { return true; });
     survey();
@@ -98,7 +98,7 @@ class Paintings {
       fields_.push_back(q);
     }
     if (times_.empty()) return out;
-    if (out.rows.empty()) {  // nothing differs from place to place: the particles as such
+    if (out.rows.empty()) {  // all fields are uniform: the particles as such
       out.rows.push_back(
           {"Particles", "", 0, 0, false,
            std::vector(runs_.size(), std::vector<std::optional<Shot>>(times_.size()))});
@@ -144,8 +144,7 @@ class Paintings {
         const double nearest = *std::min_element(
             times.begin(), times.end(),
             [&](double a, double b) { return std::abs(a - wanted) < std::abs(b - wanted); });
-        // A run that ended long before has no picture of this time; the same frame twice would be a
-        // lie.
+        // A run that ended long before has no picture of this time.
         const double step = n > 1 ? (last - first) / (n - 1) : 1;
         const bool repeated =
             frames.moments.size() > 1 && frames.moments[frames.moments.size() - 2] == nearest;
@@ -200,8 +199,7 @@ class Paintings {
       const Quantity* known = titled(title);
       const Quantity rules = known ? *known : Quantity{};
       std::optional<Range> range = range_of(values, rules);
-      // The first moment is what the deck says, not what came of it: it may widen the range, but
-      // not by far.
+      // The first frame is the initial state, not a result: it may widen the range only moderately.
       values.insert(values.end(), at_start[title].begin(), at_start[title].end());
       const std::optional<Range> all = range_of(values, rules);
       if (all && (!range || all->high - all->low < 2 * (range->high - range->low))) range = all;
@@ -213,7 +211,7 @@ class Paintings {
     }
   }
 
-  /// Extends the box of what is seen; a few particles that flew off do not shrink the rest.
+  /// Extends the visible box; a few distant particles do not reduce the scale.
   static void look(RunFrames& run, const std::string& set, const VtuFrame& frame, bool first) {
     if (frame.points.empty()) return;
     Aabb box;
@@ -244,7 +242,7 @@ class Paintings {
       return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
     };
     Range range{at(rules.clipped), at(1 - rules.clipped), "", false};
-    // Where almost all is at rest, what moves still deserves its colours.
+    // Where almost all particles are at rest, the range still covers the moving ones.
     if (!(range.high > range.low)) range = {values.front(), values.back(), "", false};
     if (rules.from_zero || (range.low > 0 && range.low < 0.3 * range.high) ||
         (range.low < 0 && -range.low < 0.1 * range.high))
@@ -255,7 +253,7 @@ class Paintings {
     return range;
   }
 
-  /// What the pictures of a run show; of runs of the same scene the same.
+  /// The quantities and region of the pictures; the same for runs of the same scene.
   Aabb window(const RunFrames& run) const {
     Aabb particles = run.box, walls = run.walls;
     const std::string title = text_at(run.run->summary, "/title");
@@ -275,7 +273,7 @@ class Paintings {
   }
 
   void paint_all(ScenePictures& out, int width) {
-    // The same scale for all runs, when they show places of about the same size.
+    // The same scale for all runs, when their regions have about the same size.
     std::vector<View> views;
     for (const RunFrames& run : runs_)
       views.push_back(window(run).empty() ? View{}
@@ -309,8 +307,7 @@ class Paintings {
                                                                   : 4));
     };
     Painter painter(view, std::move(colors));
-    // Sets that show the quantity come last: water lies in the pores of soil, where both would be
-    // painted.
+    // Sets that show the quantity are drawn last: water overlaps soil, where both would be drawn.
     std::vector<std::pair<int, const std::pair<const std::string, VtuFrame>*>> order;
     for (const auto& entry : now.sets) {
       const bool shows = entry.second.find(quantity.field) &&

@@ -1,5 +1,5 @@
 #pragma once
-// Pictures of what happened in runs, painted from their frames.
+// Pictures of runs, drawn from their frames.
 
 #include <optional>
 #include <span>
@@ -43,15 +43,14 @@ struct PictureWishes {
 };
 
 /// Paints the frames of runs: speed of everything that moves, pressure of water, plastic strain of
-/// soil, von Mises stress of solids, as far as the frames hold them and they differ from place to
-/// place.
+/// soil, von Mises stress of solids, as far as the frames hold them and they are not uniform.
 ScenePictures paint_runs(std::span<const RunRecord> runs, const PictureWishes& wishes = {});
 
 /// The spacing of particles (m), from the distances of some of them to their nearest neighbours; 0
 /// when there are fewer than two.
 double typical_spacing(std::span<const Vec3> places);
 
-/// In what colour a set is painted that shows no quantity.
+/// Colour of a set without a quantity.
 Color set_color(const std::string& set);
 
 }  // namespace sphgeo

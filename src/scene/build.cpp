@@ -42,7 +42,7 @@ bool has_water(const Model& model) {
   });
 }
 
-/// Whether there is soil and no water: then its kernel alone decides how deep walls are.
+/// Whether there is soil and no water: then its kernel alone determines the wall thickness.
 bool only_soil(const Model& model) { return has_soil(model) && !has_water(model); }
 
 }  // namespace
@@ -65,7 +65,7 @@ BodyPoints fill_body(const Body& body, const Model& model) {
     points = {fill_lattice(*body.shape, dp, model.dimension), std::pow(dp, model.dimension)};
   }
   if (n.lattice_jitter > 0) {
-    // Bodies of one shape must not be jittered alike.
+    // Bodies of equal shape get different jitter.
     const std::uint64_t seed =
         random_bits(static_cast<std::uint64_t>(n.lattice_seed), fnv1a(body.name));
     parallel_for(static_cast<Index>(points.at.size()), [&](Index k) {
@@ -113,7 +113,7 @@ void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
   if (fill == Filling::none) return;
   scene.pore_water =
       pore_water(model, found, fill == Filling::draft ? Relaxing::draft : Relaxing::as_deck);
-  // Water of variable mass (Zhu et al.) stands on its lattice, and its mass follows the porosity.
+  // Water of variable mass (Zhu et al.) starts on a lattice, and its mass follows the porosity.
   std::optional<WaterTarget> share;
   if (model.numerics.pore_water == "variable_mass" && has_soil(model)) share.emplace(model);
   if (found.has_errors()) return;
@@ -127,7 +127,7 @@ void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
       const std::vector<Vec3>* relaxed = scene.pore_water ? scene.pore_water->of_body(b) : nullptr;
       filling =
           relaxed ? BodyPoints{*relaxed, std::pow(model.resolution, Dim)} : fill_body(body, model);
-    } catch (const Error& e) {  // without end, or too large to fill
+    } catch (const Error& e) {  // unbounded, or too large to fill
       found.error("E113", model.place_of(path + ".shape"), path + ".shape", e.what());
       continue;
     }
@@ -183,8 +183,8 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
   if (!any) return;
   const double dp = model.resolution;
   // Pairs use the larger smoothing length of both sets. Of one phase alone, that of the walls is no
-  // larger than its own. With water and soil they are that of the larger one: the share of a kernel
-  // that lies in walls is asked for at both.
+  // larger than its own. With water and soil they are that of the larger one: the part of a kernel
+  // that lies in walls is needed at both.
   const double h = only_soil(model) ? soil_smoothing_length(model)
                    : has_soil(model)
                        ? std::max(water_smoothing_length(model), soil_smoothing_length(model))
@@ -259,7 +259,7 @@ void set_domain(World<Dim>& world, const Model& model) {
     if (const auto* border = dynamic_cast<const ExchangeBoundary*>(b.get()))
       box.extend(border->source_box());
   if (box.empty()) box = {Vec3::Zero(), Vec3::Zero()};
-  // What leaves this box is lost: as much room on every side as the scene is large.
+  // Particles that leave this box are lost: its margin on every side is the size of the scene.
   const double room = std::max((box.hi - box.lo).maxCoeff(), 10 * model.resolution);
   box = box.grown(room);
   if (model.numerics.domain_min) box.lo = *model.numerics.domain_min;

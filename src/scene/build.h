@@ -16,11 +16,11 @@ namespace sphgeo {
 /// How the speed of sound was found, for `check`.
 struct SoundSpeed {
   double value;         ///< c0, m/s
-  double max_speed;     ///< the speed it rests on, m/s
+  double max_speed;     ///< the expected largest speed that it is derived from, m/s
   std::string because;  ///< one sentence
 };
 
-/// A world and what was noticed while building it.
+/// A world and the findings of building it.
 template <int Dim>
 struct Scene {
   std::unique_ptr<World<Dim>> world;
@@ -40,10 +40,10 @@ template <int Dim>
 Scene<Dim> build_scene(const Model& model, Diagnostics& found,
                        Filling filling = Filling::bodies_and_boundaries);
 
-/// c0 of the water: from the deck, or ten times the largest speed to be expected (below Eq. 26).
+/// c0 of the water: from the deck, or ten times the largest expected speed (below Eq. 26).
 SoundSpeed water_sound_speed(const Model& model, const Aabb& water, const Aabb& everything);
 
-/// How deep walls and other supports must be, m.
+/// Thickness of walls, m.
 double support_radius(const Model& model);
 
 /// Spacing of the water kernel, m.

@@ -57,8 +57,8 @@ void check_bodies_overlap(const World<Dim>& world, const ParticleSet<Dim>& set,
   }
 }
 
-// What moves and starts closer to a wall particle than half a spacing starts with a burst. What is
-// clamped does not move.
+// A particle that is free to move and starts closer to a wall particle than half a spacing is
+// repelled strongly. Clamped particles do not move.
 template <int Dim>
 void check_in_walls(World<Dim>& world, const ParticleSet<Dim>& set, Diagnostics& found) {
   const ParticleSet<Dim>* walls = world.find("walls");
@@ -74,7 +74,7 @@ void check_in_walls(World<Dim>& world, const ParticleSet<Dim>& set, Diagnostics&
     Index count = 0, body = -1, wall = -1;
     Vec3 at = Vec3::Zero();
   };
-  // Those nearer than this many spacings.
+  // Threshold of the distance, in spacings.
   const auto nearer_than = [&](double spacings) {
     Clash clash;
     for (Index i = 0; i < set.size(); ++i) {
@@ -93,18 +93,19 @@ void check_in_walls(World<Dim>& world, const ParticleSet<Dim>& set, Diagnostics&
   };
   const Clash clash = nearer_than(0.45);
   if (clash.count == 0 && set.phase() == "soil") {
-    // Soil is pushed off a wall from 0.85 spacings on (see SoilWallPair), with its bulk modulus.
+    // Walls repel soil nearer than 0.85 spacings (see SoilWallPair), with its bulk modulus.
     const Clash pushed = nearer_than(0.7);
     if (pushed.count == 0) return;
     const std::string path = fmt::format("bodies[{}].shape", pushed.body);
     found.warning(
         "W134", model.place_of(path), path,
-        fmt::format("soil starts with a push: {} of its particles lie nearer than 0.7 spacings to "
-                    "a particle of a wall, one of body '{}' at {}, beside boundary '{}'",
+        fmt::format("soil overlaps the wall's contact range: {} of its particles lie nearer than "
+                    "0.7 spacings to a wall particle, one of body '{}' at {}, beside boundary '{}'",
                     pushed.count, model.bodies[static_cast<std::size_t>(pushed.body)].name,
                     point_text(pushed.at),
                     model.boundaries[static_cast<std::size_t>(pushed.wall)]->name),
-        "a wall along the lattice, or a start half a spacing away from it, starts at rest");
+        "the initial repulsion adds energy; align the wall with the lattice, or start half a "
+        "spacing away from it");
     return;
   }
   if (clash.count == 0) return;
@@ -164,8 +165,7 @@ void check_probes(const World<Dim>& world, Diagnostics& found) {
       if (!box.grown(model.resolution).contains(at))
         found.warning(
             "W123", model.place_of(path + ".at"), path + ".at",
-            fmt::format("probe '{}' at {} lies outside of everything in the scene", probe.name,
-                        point_text(at)),
+            fmt::format("probe '{}' at {} lies outside of the scene", probe.name, point_text(at)),
             fmt::format("the scene spans x from {:.4g} to {:.4g} m and z from {:.4g} to {:.4g} m",
                         box.lo.x(), box.hi.x(), box.lo.z(), box.hi.z()));
     for (const FieldRequest& r : probe.needs(model))
@@ -182,7 +182,7 @@ void check_probes(const World<Dim>& world, Diagnostics& found) {
   }
 }
 
-// Water that meets soil without a drag law feels its pressure only.
+// Without a drag law water and soil interact by pressure only.
 template <int Dim>
 void check_coupling(const World<Dim>& world, Diagnostics& found) {
   if (!world.find("soil") || !world.find("water")) return;
@@ -197,7 +197,8 @@ void check_coupling(const World<Dim>& world, Diagnostics& found) {
   }
 }
 
-// What a deck switches off must be an effect that can be, and the reader is told what that means.
+// An effect that a deck switches off must be one that can be, and the warning states what that
+// means.
 void check_switched_off(const Model& model, Diagnostics& found) {
   std::vector<std::string> can, all;
   for (const auto& entry : EffectRegistry::all()) {
@@ -224,8 +225,8 @@ void check_switched_off(const Model& model, Diagnostics& found) {
   }
 }
 
-// Measured at CFL numbers up to 1: water at rest, water that hits a ceiling and sand that collapses
-// run at 0.8 and not at 1, a plate that swings at 0.9 and not at 1.
+// Measured at CFL numbers up to 1: water at rest, water that hits a ceiling and collapsing sand are
+// stable at 0.8 and not at 1, a vibrating plate at 0.9 and not at 1.
 void check_steps(const Model& model, Diagnostics& found) {
   const auto warn = [&](const char* key, double value, double holds) {
     if (!(value * model.numerics.time_step_factor > holds)) return;

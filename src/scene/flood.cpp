@@ -6,13 +6,13 @@
 namespace sphgeo {
 namespace {
 
-// Of the spacing; see the comment of the class. Less than what leaves a gap of two spacings between
-// centres at least one cell wide (0.75).
+// In spacings; see the comment of the class. Below 0.75, for which a gap of two spacings between
+// centres is at least one cell wide.
 constexpr double closing = 0.73;
 constexpr int most_pools = 200;
 constexpr std::uint8_t far = 255;
 
-// Steps of a way, as they are stored for walking it back.
+// Steps of a path, stored for tracing it back.
 enum From : std::uint8_t { start = 0, from_above = 250, from_below = 251 };
 
 }  // namespace
@@ -43,7 +43,7 @@ double FloodGrid::size_of(const FloodFrame& frame) {
 FloodGrid::FloodGrid(const FloodFrame& frame) : frame_(frame), cell_(0.5 * frame.spacing) {
   const Vec3 a = inner(frame.box.lo), b = inner(frame.box.hi);
   const Vec3 lo = a.cwiseMin(b), hi = a.cwiseMax(b);
-  // Room beyond the solids on all sides: what comes there is outside.
+  // Margin beyond the solids on all sides: cells there are outside.
   lo_ = lo.array() - 4 * cell_;
   for (int k = 0; k < 3; ++k)
     n_[k] = static_cast<int>(std::ceil((hi[k] - lo[k]) / cell_ - 1e-6)) + 8;
@@ -238,7 +238,7 @@ void FloodGrid::measure_clearance() {
 std::vector<FloodGrid::Step> FloodGrid::widest_way(const Cells& pool, int top) {
   measure_clearance();
   forget();
-  // The widest cells first: what is reached then is reached by the widest way.
+  // The widest cells first: each cell is then reached by the widest path.
   std::vector<Cells> queue(256);
   std::vector<std::size_t> head(256, 0);  // first come, first served: no detours among equals
   std::vector<std::uint8_t> came(state_.size(), start);

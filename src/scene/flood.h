@@ -1,6 +1,6 @@
 #pragma once
-// Where a liquid could go between the solid particles of a scene: a grid of half spacings around
-// them and floods through its free cells. No physics but "down first".
+// Where a liquid can flow between the solid particles of a scene: a grid of half spacings and a
+// flood fill of its free cells. The only physics is that it flows down first.
 
 #include <cstdint>
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace sphgeo {
 
-/// What the grid is laid over.
+/// Extent and orientation of the grid.
 struct FloodFrame {
   int dimension;    ///< 2: the x-z plane
   double spacing;   ///< dp, m; cells are half as wide
@@ -20,7 +20,7 @@ struct FloodFrame {
 };
 
 /// Cells of half a spacing. A solid particle closes the cells with centres in a cube of 0.73
-/// spacings half-width around it: layers up to 1.46 spacings apart are tight, and a gap from which
+/// spacings half-width around it: layers up to 1.46 spacings apart are closed, and a gap from which
 /// one layer of particles is missing stays open wherever it lies on the grid.
 class FloodGrid {
  public:
@@ -42,23 +42,23 @@ class FloodGrid {
   /// The liquid, cut into parts that do not touch each other, largest first, at most 200 of them.
   /// Call once, after all of it has been added.
   std::vector<Cells> pools();
-  /// The pool (index into the result of `pools`) within `reach` (m) of a place along the axes, or
-  /// -1.
+  /// The pool (index into the result of `pools`) within `reach` (m) of a position along the axes,
+  /// or -1.
   int pool_at(const Vec3& p, double reach) const;
 
-  /// Whether the pool can reach the outside at all without rising above `top`, a layer.
+  /// Whether the pool can reach the outside without rising above `top`, a layer.
   bool escapes(const Cells& pool, int top);
-  /// Lets `volume` cells of the pool sink and spread: down before sideways, sideways before up.
-  /// The highest layer they reached when some came to the outside; empty when all found room.
+  /// Moves `volume` cells of the pool: down before sideways, sideways before up. The highest layer
+  /// reached when some cells reach the outside; empty otherwise.
   std::optional<int> spill_layer(const Cells& pool, Index volume, int top);
 
-  /// A step of a way out.
+  /// A step of a path to the outside.
   struct Step {
     Vec3 at;        ///< m
     int clearance;  ///< cells to the nearest solid
-    bool down;      ///< whether the way falls here
+    bool down;      ///< whether the path goes down here
   };
-  /// The way from the pool to the outside whose narrowest place is as wide as can be, without
+  /// The path from the pool to the outside whose narrowest point is as wide as possible, without
   /// rising above `top`; empty when there is none.
   std::vector<Step> widest_way(const Cells& pool, int top);
 

@@ -60,7 +60,7 @@ void join_walls(std::vector<WallPart>& parts, double dp, double reach, const Vec
     parallel_for(static_cast<Index>(ahead.size()), [&](Index k) {
       const auto i = static_cast<std::size_t>(k);
       ahead[i] = surface_ahead(*part.solid, part.points[i], dp, reach);
-      // Half a spacing further on: a gap that narrow holds no fluid.
+      // Half a spacing farther: a narrower gap has no room for fluid.
       covered[i] =
           ahead[i] && inside_any(joined, &part, *ahead[i] + 0.5 * dp * part.points[i].normal, 0);
     });
@@ -92,7 +92,7 @@ void join_walls(std::vector<WallPart>& parts, double dp, double reach, const Vec
       nearest = r2;
       best = j;
     });
-    if (best < 0) return;  // so deep that nothing reaches it
+    if (best < 0) return;  // deeper than the kernel support
     const Vec3 way = to_space<Dim>(Vec<Dim>(exposed[static_cast<std::size_t>(best)] - at));
     if (way.norm() > 1e-6 * dp) p.normal = way.normalized();
   });

@@ -20,7 +20,7 @@ constexpr double small_pool = 0.01;
 
 constexpr double inf = std::numeric_limits<double>::infinity();
 
-/// All particles of a scene by what they are to a leak.
+/// All particles of a scene, by their role in a leak.
 struct Parts {
   struct Solid {
     Vec3 at;
@@ -40,7 +40,7 @@ Parts parts_of(const Scene<Dim>& scene, const Model& model, int up, bool up_is_h
   Parts parts;
   for (const auto& s : scene.world->sets()) {
     if ((s->phase() != "wall" && s->phase() != "solid") || s->name() == "skin")
-      continue;  // the skin is on its solids
+      continue;  // interface particles lie on their solids
     const auto& x = s->vector(fields::position);
     const auto& part = s->tag(fields::part);
     for (Index i = 0; i < s->size(); ++i)
@@ -53,7 +53,7 @@ Parts parts_of(const Scene<Dim>& scene, const Model& model, int up, bool up_is_h
     const WallBoundary& wall = *found;
     for (const OpenFace& face : wall.open_faces(placement)) {
       if (face.axis == up && face.high == up_is_high)
-        continue;  // liquid may come in there, and never leaves
+        continue;  // liquid may enter there, and never leaves
       for (const Vec3& p : face.points)
         parts.lids.push_back({wall.motion ? wall.motion->position(p, 0) : p,
                               static_cast<std::int32_t>(b), face.name});
@@ -160,19 +160,19 @@ class LeakSearch {
     const std::size_t k = narrowest(way);
     const bool roofed = wall_above(way[k].at);
     if (spill) {
-      // Over a rim, or through a slit open at the top: only when the walls stand all around the
-      // pool, so that a weir or a low wall is not taken for a mistake.
+      // Over a rim, or through a slit open at the top: only when walls surround the pool, so that a
+      // weir or a low wall is not reported.
       if (!roofed && !way[k].down && (least < 0.9 || !upright_)) return;
     } else {
-      // It would come to rest inside, but the splash reaches a hole. It is a leak if it falls from
-      // there for good.
+      // It would come to rest inside, but a splash reaches a hole. It is a leak if it falls out of
+      // the scene from there.
       const Vec3& beyond = way[std::min(k + 8, way.size() - 1)].at;
       if (!roofed || wall_below(beyond)) return;
     }
     report(pool, way[k].at);
   }
 
-  // The middle of the narrowest stretch of the way.
+  // The middle of the narrowest part of the path.
   static std::size_t narrowest(const std::vector<FloodGrid::Step>& way) {
     int least = way[0].clearance;
     for (const auto& s : way) least = std::min(least, s.clearance);
@@ -183,8 +183,7 @@ class LeakSearch {
     return (first + last) / 2;
   }
 
-  // The solid particle nearest to a place, in the largest coordinate as in the grid, and its
-  // boundary.
+  // The solid particle nearest to a position, in the maximum norm as in the grid, and its boundary.
   std::pair<double, std::int32_t> nearest_solid(const Vec3& at) const {
     double nearest = inf;
     std::int32_t boundary = -1;
@@ -231,11 +230,12 @@ class LeakSearch {
                     body.name, where(hole, frame_.dimension),
                     std::max(0.0, 2 * nearest - frame_.spacing),
                     std::max(0.0, 2 * nearest / frame_.spacing - 1), near),
-        "let the walls there meet or overlap; if the opening is meant, nothing need be done");
+        "close the walls there or let them overlap; no change is needed if the opening is "
+        "intended");
   }
 
   // A point of an open face that the pool starts at. Pools touch no other pool's cells, so the
-  // first one found near a point is this one or a stranger.
+  // first one found near a point is this pool or another one.
   const Parts::Lid* touched_lid(int pool) const {
     for (const auto& l : parts_.lids)
       if (grid_.pool_at(l.at, 0.8 * frame_.spacing) == pool) return &l;
@@ -247,10 +247,9 @@ class LeakSearch {
     const std::string path = fmt::format("boundaries[{}].open", lid->boundary);
     found_.add(
         {Severity::note, "N126", model_.place_of(path), path,
-         fmt::format(
-             "body '{}' starts at the open face '{}' of '{}' and runs out there from the beginning",
-             model_.bodies[static_cast<std::size_t>(pool.body)].name, lid->face,
-             model_.boundaries[static_cast<std::size_t>(lid->boundary)]->name),
+         fmt::format("body '{}' touches the open face '{}' of '{}' at t = 0 and flows out there",
+                     model_.bodies[static_cast<std::size_t>(pool.body)].name, lid->face,
+                     model_.boundaries[static_cast<std::size_t>(lid->boundary)]->name),
          ""});
   }
 
@@ -269,7 +268,7 @@ template <int Dim>
 void check_leaks(const Scene<Dim>& scene, Diagnostics& found) {
   const Model& model = scene.world->model();
   const double g = model.gravity.norm();
-  if (!(g > 0)) return;  // no down
+  if (!(g > 0)) return;  // no direction of gravity
   FloodFrame frame{Dim, model.resolution, 0, false, {}};
   model.gravity.cwiseAbs().maxCoeff(&frame.up);
   if (Dim == 2 && frame.up == 1) return;
@@ -297,13 +296,13 @@ void check_leaks(const Scene<Dim>& scene, Diagnostics& found) {
     here.box.extend(own);
     (frame.up_is_high ? here.box.hi : here.box.lo)[frame.up] =
         (frame.up_is_high ? own.hi : own.lo)[frame.up];
-    if (const double cells = FloodGrid::size_of(here);
-        cells > most_cells) {  // minutes for a check that is only a help
+    if (const double cells = FloodGrid::size_of(here); cells > most_cells) {  // would take minutes
       found.add({Severity::note, "N127", model.place_of("resolution"), "resolution",
-                 fmt::format("not checked whether '{}' can run out of its container: that would "
-                             "take {:.2g} cells of half a spacing, and at most {:g} are tried",
+                 fmt::format("not checked whether '{}' can run out of its container: this would "
+                             "take {:.2g} cells of half a spacing, more than {:g}",
                              s->name(), cells, most_cells),
-                 "the check with a coarser --set resolution=... finds gaps that are wide there"});
+                 "check with a coarser --set resolution=... to find gaps that are wide at that "
+                 "resolution"});
       continue;
     }
     LeakSearch(model, parts, here, upright, found).run(liquid, body);

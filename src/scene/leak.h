@@ -6,10 +6,10 @@
 namespace sphgeo {
 
 /// W125: water (or another liquid phase) that starts between walls can run out through a gap of
-/// about one spacing or more; names the place, the width and the nearest boundary. N126: it starts
-/// at a face that the deck left open. N127: the scene is too wide for its spacing to look. Silent
-/// where nothing encloses it, where only splashes can reach an opening, and where it comes to rest
-/// inside the scene.
+/// about one spacing or more; names the position, the width and the nearest boundary. N126: it
+/// starts at a face that the deck left open. N127: the scene has too many cells for this check. No
+/// finding where nothing encloses it, where only splashes can reach an opening, and where it comes
+/// to rest inside the scene.
 template <int Dim>
 void check_leaks(const Scene<Dim>& scene, Diagnostics& found);
 

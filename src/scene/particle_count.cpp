@@ -68,7 +68,7 @@ double total_of(const ParticleCounts& counts) {
 
 Model at_resolution(const Model& model, double spacing) {
   Model other = model;
-  // Solids of their own spacing keep its ratio to the others'.
+  // Solids with their own spacing keep its ratio to that of the others.
   for (Body& b : other.bodies)
     if (b.spacing) *b.spacing *= spacing / model.resolution;
   other.resolution = spacing;

@@ -45,8 +45,8 @@ void follow(ParticleSet<Dim>& skin, const ParticleSet<Dim>& solids, std::int32_t
     const Body& body = model.bodies[static_cast<std::size_t>(solids.tag(fields::part)[i])];
     const Vec3 at = to_space<Dim>(solids.vector(fields::reference_position)[i]);
     if (body.shape->signed_distance(at) <= -depth) continue;
-    // What is held within a wall, such as the foot of a plate: the wall is there already, and a
-    // place that is filled twice would push twice.
+    // A part clamped within a wall, such as the foot of a plate: the wall particles fill that
+    // region, and it would be counted twice.
     const bool walled = solids.tag(fields::clamp)[i] >= 0 &&
                         std::any_of(walls.begin(), walls.end(), [&](const auto& wall) {
                           return wall->signed_distance(at) < 0;
@@ -65,7 +65,7 @@ void follow(ParticleSet<Dim>& skin, const ParticleSet<Dim>& solids, std::int32_t
     skin.tag(fields::source_set)[to] = number;
     skin.vector(fields::position)[to] = solids.vector(fields::position)[i];
     skin.vector(fields::velocity)[to] = solids.vector(fields::velocity)[i];
-    // As large as the cell that it keeps water and soil out of.
+    // Volume of the cell that the particle occupies.
     skin.scalar(fields::reference_volume)[to] = std::pow(solids.spacing(), Dim);
     skin.scalar(fields::no_slip)[to] = solid_of(model, body)->slip == "no_slip" ? 1 : 0;
     const Vec3 normal =
@@ -89,7 +89,7 @@ void add_skin(Scene<Dim>& scene, const Model& model, Filling filling) {
       spacing = std::max(spacing, set->spacing());
     }
   // A quarter more than a kernel: lists of contacts hold for an advection step, in which two bodies
-  // may come 0.4 h closer. And what the contact with walls reaches, 1.5 of their spacings.
+  // may come 0.4 h closer. And the range of contact with walls, 1.5 of their spacings.
   ParticleSet<Dim>& skin =
       world.add_set("skin", "wall", spacing, std::max(1.25 * h, 1.6 * model.resolution), true);
   for (const FieldSpec* f : {&fields::normal, &fields::reference_normal, &fields::no_slip,

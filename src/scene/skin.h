@@ -1,18 +1,18 @@
 #pragma once
-// The skin of solids: what water, soil, walls and other solids touch of them.
+// Interface particles of solids: those that interact with water, soil, walls and other solids.
 
 #include "scene/build.h"
 
 namespace sphgeo {
 
-/// Whether the solids of a deck can meet anything: water, soil, walls, each other or themselves.
+/// Whether the solids of a deck can interact with water, soil, walls, each other or themselves.
 bool has_skin(const Model& model);
 
-/// How deep below the surface of a solid its skin reaches, m.
+/// Depth of the layer of interface particles below the surface of a solid, m.
 double skin_depth(const Model& model);
 
-/// Adds the set "skin" where solids can meet something: a copy of their particles near the surface,
-/// which follows them. It keeps their bodies as `part`, and knows them by set and id.
+/// Adds the set "skin" where solids can interact: copies of their particles near the surface, which
+/// follow them. They keep the body as `part`, and refer to their particles by set and id.
 template <int Dim>
 void add_skin(Scene<Dim>& scene, const Model& model, Filling filling);
 

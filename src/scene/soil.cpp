@@ -14,7 +14,7 @@ const Soil* soil_of(const Model& model, const Body& body) {
   return dynamic_cast<const Soil*>(model.material(body.material));
 }
 
-/// Volume fraction at t = 0; NaN when nothing gives it.
+/// Volume fraction at t = 0; NaN when it is not given.
 double initial_fraction(const Body& body, const Soil& soil, const Vec3& at) {
   if (body.volume_fraction) return (*body.volume_fraction)(at, 0);
   if (body.porosity) return 1 - (*body.porosity)(at, 0);
@@ -28,7 +28,7 @@ double mean_fraction(const Body& body, const Soil& soil, const BodyPoints& point
   return points.at.empty() ? 1 : sum / static_cast<double>(points.at.size());
 }
 
-/// Vertical stress by the weight of the soil between a place and the level, Pa, compression
+/// Vertical stress by the weight of the soil between a position and the level, Pa, compression
 /// negative.
 double weight_above(const Body& body, const Soil& soil, const Model& model, const Vec3& at) {
   const double level = body.level.value_or(body.shape->box().hi.z());
@@ -53,7 +53,7 @@ Sym3 initial_stress(const Body& body, const Soil& soil, const Model& model, cons
   return s;
 }
 
-/// The yield function of Eq. 12 in parts of the strength at that pressure; positive outside.
+/// The yield function of Eq. 12 over the strength at that pressure; positive outside.
 double excess(const Sym3& stress, const DruckerPrager<double>& m) {
   const double s[6] = {stress[0], stress[1], stress[2], stress[3], stress[4], stress[5]};
   const StressInvariants<double> i(s);
@@ -115,10 +115,10 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
     if (set.has(fields::saturation)) set.scalar(fields::saturation)[i] = wet;
   }
   if (outside)
-    found.warning(
-        "W117", model.place_of(path), path,
-        "the initial stress lies outside of the yield surface in some places",
-        "the first step brings it back; a larger lateral_stress_ratio or cohesion would keep it");
+    found.warning("W117", model.place_of(path), path,
+                  "the initial stress lies outside of the yield surface in some positions",
+                  "the first step returns it to the yield surface; a larger lateral_stress_ratio "
+                  "or cohesion would keep it");
 }
 
 }  // namespace
@@ -144,8 +144,7 @@ void add_soil(Scene<Dim>& scene, const Model& model, Filling filling, Diagnostic
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Soil* soil = soil_of(model, model.bodies[b]);
     if (!soil) continue;
-    // Also for a run that goes on from a checkpoint: the density at rest is that of these
-    // particles.
+    // Also for a resumed run: the reference density is that of these particles.
     const BodyPoints points = fill_body(model.bodies[b], model);
     set.set_constant("density." + std::to_string(b),
                      soil->density * mean_fraction(model.bodies[b], *soil, points));

@@ -9,7 +9,7 @@
 namespace sphgeo {
 namespace {
 
-/// Index of the first clamped region that holds the place, or -1.
+/// Index of the first clamped region that contains the position, or -1.
 std::int32_t clamp_of(const Body& body, const Vec3& at) {
   for (std::size_t k = 0; k < body.clamped.size(); ++k)
     if (body.clamped[k].shape->signed_distance(at) <= 0) return static_cast<std::int32_t>(k);
@@ -23,8 +23,8 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
   const std::string path = fmt::format("bodies[{}]", b);
   const Index first = set.size();
   set.resize(first + static_cast<Index>(filling.at.size()));
-  // A boulder of a given size has a given weight: what its particles stand for is the shape, not
-  // the cells of the lattice.
+  // The weight of a boulder is that of its shape: its particles represent the volume of the shape,
+  // not the cells of the lattice.
   const double volume =
       body.filling == "lattice" && !filling.at.empty()
           ? cut_volume(*body.shape, set.spacing(), Dim) / static_cast<double>(filling.at.size())
@@ -44,8 +44,9 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
     if (!v.allFinite() || !place.allFinite()) {
       found.error(
           "E111", model.place_of(path), path,
-          fmt::format("the initial velocity or place is not a number at ({:.4g}, {:.4g}, {:.4g})",
-                      at.x(), at.y(), at.z()),
+          fmt::format(
+              "the initial velocity or position is not a number at ({:.4g}, {:.4g}, {:.4g})",
+              at.x(), at.y(), at.z()),
           "check the formulas there");
       return;
     }
@@ -67,7 +68,7 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
     }
 }
 
-/// What only solids, or only elastic ones, can have.
+/// Keys of solids only, or of elastic ones only.
 void check_keys(const Model& model, Diagnostics& found) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
@@ -77,7 +78,7 @@ void check_keys(const Model& model, Diagnostics& found) {
       if (given)
         found.error("E119", model.place_of(path), path,
                     fmt::format("'{}' has no meaning for body '{}', which is {}", key, body.name,
-                                solid ? "rigid" : "no solid"),
+                                solid ? "rigid" : "not a solid"),
                     help);
     };
     if (!solid)
@@ -85,9 +86,10 @@ void check_keys(const Model& model, Diagnostics& found) {
              "water and soil have the deck's resolution; give the spacing of solids only");
     if (!solid || solid->rigid()) {
       refuse("clamped", !body.clamped.empty(),
-             "a rigid solid that is held is a boundary of type wall; elastic solids can be clamped "
-             "in part");
-      refuse("self_contact", body.self_contact, "only an elastic solid can fold onto itself");
+             "use a boundary of type wall for a rigid solid that is fixed; elastic solids can be "
+             "clamped in part");
+      refuse("self_contact", body.self_contact,
+             "only an elastic solid can be in contact with itself");
     }
   }
 }

@@ -5,7 +5,7 @@
 
 namespace sphgeo {
 
-/// Adds a set for every spacing of solids with all bodies of it, and what is clamped of them.
+/// Adds a set for every spacing of solids with all bodies of it, and marks their clamped parts.
 /// Findings that need particles go to `found`. With Filling::none the sets are made and stay empty.
 template <int Dim>
 void add_solids(Scene<Dim>& scene, const Model& model, Filling filling, Diagnostics& found);

@@ -12,7 +12,7 @@ namespace {
 
 struct Candidate {
   double speed = 0;
-  std::string because = "nothing in the deck moves and nothing can fall";
+  std::string because = "no body or boundary of the deck moves or can fall";
   void offer(double v, std::string why) {
     if (v > speed) {
       speed = v;
@@ -50,7 +50,7 @@ SoundSpeed water_sound_speed(const Model& model, const Aabb& water, const Aabb& 
     if (const double fall = box.hi.z() - everything.lo.z();
         g > 0 && fall > 0 && std::isfinite(fall) && solid_of(model, b))
       best.offer(std::sqrt(2 * g * fall),
-                 fmt::format("the speed sqrt(2 g H) that body '{}' can fall with, for its height H "
+                 fmt::format("the speed sqrt(2 g H) of the fall of body '{}', for its height H "
                              "= {:.4g} m above the lowest point of the scene",
                              b.name, fall));
     for (int corner = 0; corner < 9; ++corner) {

@@ -24,7 +24,7 @@ struct Solid {
   std::string path;
   const WallBoundary* wall;
   std::shared_ptr<const Shape> shape;  ///< null: none
-  bool in_place;                       ///< stands at t = 0 where its shape is
+  bool in_place;                       ///< at t = 0 at the position of its shape
 };
 
 template <int Dim>
@@ -53,7 +53,7 @@ void check_solid(const Scene<Dim>& scene, const Solid& s, Diagnostics& found) {
   }
   const auto filled = std::find_if(scene.boundary_particles.begin(), scene.boundary_particles.end(),
                                    [&](const auto& p) { return p.first == s.wall->name; });
-  // A tank of which front and back alone are closed is nothing in 2D, and need not be anything.
+  // A tank of which only front and back are closed has no walls in 2D, which is no error.
   const bool across =
       Dim == 2 && s.wall->open_faces({model.resolution, support_radius(model), 2}).size() == 4;
   if (filled != scene.boundary_particles.end() && filled->second == 0 && !across)
@@ -73,15 +73,15 @@ void check_solid(const Scene<Dim>& scene, const Solid& s, Diagnostics& found) {
         "W122", model.place_of(s.path + ".shape"), s.path + ".shape",
         fmt::format("the length of boundary '{}' along {} is {:.4g} spacings, no whole number",
                     s.wall->name, "xyz"[k], cells),
-        fmt::format("its face at {} = {:.6g} m is felt {:.2g} spacings off; a resolution of {:.6g} "
-                    "m would fit",
+        fmt::format("its face at {} = {:.6g} m acts {:.2g} spacings away from there; a resolution "
+                    "of {:.6g} m would fit",
                     "xyz"[k], box.hi[k], std::abs(cells - std::floor(cells + 0.5)),
                     length / std::round(cells)));
   }
 }
 
-// Water deep in a solid, where there are no wall particles. What is near its surface is found by
-// check_water_in_walls, which also knows moving boundaries.
+// Water deep in a solid, where there are no wall particles. Water near its surface is found by
+// check_water_in_walls, also for moving boundaries.
 template <int Dim>
 void check_water_in_solid(const World<Dim>& world, const Solid& s, Diagnostics& found) {
   const ParticleSet<Dim>* water = world.find("water");
@@ -118,7 +118,8 @@ void check_probes(const Model& model, const std::vector<Solid>& solids, Diagnost
       for (const Solid& s : solids) {
         if (!s.shape || !s.in_place || s.wall->motion) continue;
         const double depth = s.shape->box().contains(at) ? -s.shape->signed_distance(at) : 0;
-        // The outermost layer stands half a spacing below the surface: so far a probe may miss it.
+        // The outermost layer lies half a spacing below the surface: a probe within that distance
+        // is accepted.
         if (depth < 0.5 * model.resolution + 1e-9) continue;
         const std::string path = fmt::format("probes[{}].at", k);
         found.warning(
@@ -159,10 +160,10 @@ void check_bodies_held(const World<Dim>& world, Diagnostics& found) {
   for (std::size_t b = 0; b < held.size(); ++b) {
     if (!seen[b] || held[b] || moving[b]) continue;
     const std::string path = fmt::format("bodies[{}].shape", b);
-    found.warning(
-        "W129", model.place_of(path), path,
-        fmt::format("nothing is below body '{}': it falls out of the scene", model.bodies[b].name),
-        "move it over a boundary");
+    found.warning("W129", model.place_of(path), path,
+                  fmt::format("there is no boundary below body '{}': it falls out of the scene",
+                              model.bodies[b].name),
+                  "move it over a boundary");
   }
 }
 

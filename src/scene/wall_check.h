@@ -7,7 +7,7 @@ namespace sphgeo {
 
 /// Findings about boundaries: damaged surfaces, boundaries without particles (E115), boxes that are
 /// no multiple of the spacing (W122), water deep in a solid (E121), probes inside a solid (W128),
-/// bodies beside the scene with nothing to hold them (W129). Boundaries that overlap are joined.
+/// bodies without any boundary below them (W129). Boundaries that overlap are joined.
 template <int Dim>
 void check_walls(const Scene<Dim>& scene, Diagnostics& found);
 

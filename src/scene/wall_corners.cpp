@@ -14,7 +14,7 @@ struct SurfacePoint {
   Vec3 at, normal;
 };
 
-/// Outward normal of the surface of a solid that is nearest to a place; shorter than 1 where two
+/// Outward normal of the surface of a solid that is nearest to a position; shorter than 1 where two
 /// are equally near.
 Vec3 normal_of(const Shape& solid, const Vec3& at, double dp, int dimension) {
   const double by = 1e-3 * dp;
@@ -27,8 +27,8 @@ Vec3 normal_of(const Shape& solid, const Vec3& at, double dp, int dimension) {
 }
 
 /// Points of the surface of these walls that soil can reach: one for each particle of the first
-/// layer, and more at an edge. The normals of particles do not serve here: those that another wall
-/// covers have been turned away from their own surface.
+/// layer, and more at an edge. The normals of particles cannot be used here: where another wall
+/// covers them they have been turned away from their own surface.
 std::vector<SurfacePoint> surface_of(const std::vector<WallPart*>& walls, double dp,
                                      int dimension) {
   const std::vector<const WallPart*> all(walls.begin(), walls.end());
@@ -56,7 +56,7 @@ std::vector<SurfacePoint> surface_of(const std::vector<WallPart*>& walls, double
   return surface;
 }
 
-/// Whether two pieces of surface stand in front of each other, at less than 120 degrees.
+/// Whether two parts of surfaces face each other, at less than 120 degrees.
 bool enclose(const SurfacePoint& a, const SurfacePoint& b, double dp) {
   return a.normal.dot(b.normal) < 0.5 && (b.at - a.at).dot(a.normal) > 0.01 * dp &&
          (a.at - b.at).dot(b.normal) > 0.01 * dp;
@@ -82,7 +82,7 @@ void mark(const std::vector<WallPart*>& walls, double dp, double reach) {
   for (WallPart* wall : walls)
     parallel_for(static_cast<Index>(wall->points.size()), [&](Index k) {
       WallPoint& p = wall->points[static_cast<std::size_t>(k)];
-      // Points of surface in front of which it lies not, one for each direction of the normal.
+      // Surface points behind which the particle lies, one for each direction of the normal.
       std::array<const SurfacePoint*, 16> seen{};
       std::size_t count = 0;
       grid.for_each_in_reach(to_scene<Dim>(p.position), reach + dp, [&](Index j, double) {

@@ -1,5 +1,5 @@
 #pragma once
-// Which wall particles lie behind two walls at once.
+// Wall particles in the concave corner of two walls.
 
 #include <vector>
 
@@ -8,8 +8,8 @@
 namespace sphgeo {
 
 /// Marks the particles in concave corners, as below the foot of a side wall: those that have the
-/// surfaces of two walls, which enclose less than 120 degrees, in front of them. Walls at rest
-/// count as one, every other one for itself; spacing dp and reach of the kernel in m.
+/// surfaces of two walls, which enclose less than 120 degrees, in front of them. All walls at rest
+/// count as one, every moving one separately; spacing dp and reach of the kernel in m.
 template <int Dim>
 void mark_corners(std::vector<WallPart>& parts, double dp, double reach);
 

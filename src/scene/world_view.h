@@ -1,5 +1,5 @@
 #pragma once
-// A running world as probes see it.
+// Access of probes to a running world.
 
 #include "probes/scene_view.h"
 #include "sph/kernel.h"
@@ -47,7 +47,7 @@ class WorldView final : public SceneView {
     const Kernel<Dim> kernel(s.smoothing_length());
     const auto& x = s.vector(fields::position);
     const Vec<Dim> point = to_scene<Dim>(at);
-    // The grid is as old as the last rearrangement, and the transport displacement came after it.
+    // The grid is that of the last rearrangement, before the transport displacement.
     world_.grid(set).for_each_in_reach(point, kernel.support() + 0.5 * s.spacing(),
                                        [&](Index i, double) {
                                          const double w = kernel.w((x[i] - point).squaredNorm());

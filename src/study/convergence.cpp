@@ -11,7 +11,7 @@ constexpr double safe = 1.25, unsafe = 3;               ///< Roache's factors: t
 constexpr double least_order = 0.5, largest_order = 4;  ///< outside of these no level is asymptotic
 
 /// The observed order of three values by the fixed point of Celik's Eqs. 5: the ratios of the
-/// spacings need not be equal. Empty when it does not settle.
+/// spacings need not be equal. Empty when it does not converge.
 std::optional<double> order_of_values(const Level& coarse, const Level& middle, const Level& fine) {
   const double r21 = middle.spacing / fine.spacing, r32 = coarse.spacing / middle.spacing;
   const double e21 = middle.value - fine.value, e32 = coarse.value - middle.value;
@@ -27,7 +27,7 @@ std::optional<double> order_of_values(const Level& coarse, const Level& middle, 
   return {};
 }
 
-/// Rounding is no change.
+/// Differences of the order of round-off are no change.
 bool same(double a, double b) {
   return std::abs(a - b) <= 1e-12 * std::max(std::abs(a), std::abs(b));
 }
@@ -38,7 +38,7 @@ std::optional<double> order_of_errors(std::span<const Level> levels) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, largest = 0;
   for (const Level& level : levels) largest = std::max(largest, level.error.value_or(0));
   for (const Level& level : levels) {
-    // What is a millionth of another error is rounding, or luck, and has no order.
+    // An error a million times smaller than another one is round-off or chance, and has no order.
     if (!level.error || !(*level.error > 1e-6 * largest)) continue;
     const double x = std::log(level.spacing), y = std::log(*level.error);
     n += 1;
@@ -89,8 +89,8 @@ Convergence convergence(std::span<const Level> levels) {
       const double r32 = coarse.spacing / middle.spacing;
       const std::optional<double> p =
           e21 != 0 && e32 != 0 ? order_of_values(coarse, middle, fine) : std::nullopt;
-      // Values with an order of zero, falling without end, have these ratios; Celik's formula takes
-      // an absolute value and cannot tell what diverges.
+      // These are the ratios of values with an order of zero; Celik's formula takes an absolute
+      // value and does not detect divergence.
       const bool shrinks = std::abs(e32) * std::log(ratio) > std::abs(e21) * std::log(r32);
       if (p && shrinks && *p >= least_order && *p <= largest_order) {
         c.label = "monotone";

@@ -75,8 +75,7 @@ std::string price_of_spacing(std::span<const Offer> offers, const ErrorScale& sc
   for (const Offer& o : offers)
     if (o.error && std::isfinite(*o.error) && o.wall_s > 0)
       points.push_back({o.spacing, *o.error, o.wall_s});
-  if (points.size() < 2)
-    return "one run with an error is no ladder: nothing can be said about its price";
+  if (points.size() < 2) return "a single run with an error: its cost at other errors is unknown";
   const Point first = points.front(), last = points.back();
   const std::string against = scale.reference.empty() ? "" : " against " + scale.reference;
   if (!(last.error < first.error) || !(last.error > 0)) {
@@ -87,8 +86,8 @@ std::string price_of_spacing(std::span<const Offer> offers, const ErrorScale& sc
     return text;
   }
   // Beyond the finest run: the order of all errors, and the growth of time between the two finest
-  // runs, where the time of the start counts least. More than second order is luck at one spacing,
-  // not a property of the kernel sums.
+  // runs, where the start-up time has the smallest share. An order above two is chance at one
+  // spacing, not a property of the kernel sums.
   PowerLaw error_law = law(last.h, last.error, first.h, first.error);
   const bool lucky = error_law.exponent > 2;
   error_law.exponent = std::min(error_law.exponent, 2.0);

@@ -24,7 +24,7 @@ RecordedResult recorded(const Json& row) {
           text_at(row, "/note")};
 }
 
-/// The runs of a curve that say something about the claim; coarsest first where spacings differ.
+/// The runs of a curve that have the claim; coarsest first where spacings differ.
 StudyResult gather(const Study& study, const StudyCurve& curve, const StudyClaim& claim) {
   StudyResult result;
   result.name = claim.name;
@@ -53,7 +53,7 @@ void judge(StudyResult& result, const StudyClaim& claim) {
     for (const RecordedResult& r : values) result.errors.push_back(r.error);
     result.error_against = "the reference";
   } else if (result.by_spacing) {
-    // The finest run has no error that it could tell itself.
+    // The finest run has no error against itself.
     const double finest = *values.back().value;
     const double unit = claim.relative && finest != 0 ? std::abs(finest) : 1;
     for (const RecordedResult& r : values)
@@ -70,7 +70,7 @@ void judge(StudyResult& result, const StudyClaim& claim) {
         {result.runs[k]->spacing, *values[k].value, known ? result.errors[k] : std::nullopt});
   result.convergence = convergence(levels);
   if (claim.norm || values.back().reference == 0.0)
-    result.convergence.gci.reset();  // a share of an error that goes to zero means nothing
+    result.convergence.gci.reset();  // a fraction of an error that tends to zero has no meaning
 }
 
 Offer offer(const StudyResult& result, std::size_t k) {

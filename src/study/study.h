@@ -1,5 +1,5 @@
 #pragma once
-// A study: runs of one deck with different settings, and what their results say together.
+// A study: runs of one deck with different settings, and the evaluation of their results.
 
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -21,7 +21,7 @@ struct RecordedResult {
   std::string note;
 };
 
-/// What a run did, from its summary.json.
+/// Results of a run, from its summary.json.
 struct RunOutcome {
   std::string status;   ///< done, unstable, stopped, failed; "missing" without a summary
   std::string message;  ///< why it did not end as planned
@@ -47,13 +47,13 @@ struct StudyRun {
   RunOutcome record;
 };
 
-/// A result that a deck claims, and how its errors are meant.
+/// A result that a deck claims, and the kind of its errors.
 struct StudyClaim {
   std::string name;
   bool relative = true;  ///< errors are shares (of the reference or of a curve's range)
   double tolerance = 0;
   bool norm =
-      false;  ///< the value is an error itself (a curve's norm, what must stay below a bound)
+      false;  ///< the value is an error itself (a curve's norm, or a value with an upper bound)
 };
 
 /// One result along one curve.

@@ -124,11 +124,11 @@ std::string runs_table(const Study& study) {
 }  // namespace
 
 std::string study_page(const Study& study, const std::vector<StudyResult>& results) {
-  std::string page = page_head(
-      study.title.empty() ? study.deck : study.title,
-      fmt::format("<p class=\"quiet\">What accuracy costs in time: {}, {}, {}, sphgeo {}</p>\n",
-                  html_escaped(study.deck), html_escaped(study.date), html_escaped(study.machine),
-                  html_escaped(study.version)));
+  std::string page =
+      page_head(study.title.empty() ? study.deck : study.title,
+                fmt::format("<p class=\"quiet\">Accuracy against time: {}, {}, {}, sphgeo {}</p>\n",
+                            html_escaped(study.deck), html_escaped(study.date),
+                            html_escaped(study.machine), html_escaped(study.version)));
   for (const StudyClaim& claim : study.claims) {
     const auto first = std::find_if(results.begin(), results.end(),
                                     [&](const StudyResult& r) { return r.name == claim.name; });

@@ -54,7 +54,7 @@ Variation parse_variation(const std::string& text) {
     const std::string whole(trimmed(value));
     if (whole.empty()) throw refuse("a value is missing");
     if (std::find(v.values.begin(), v.values.end(), whole) != v.values.end())
-      throw refuse("'" + whole + "' stands there twice");
+      throw refuse("'" + whole + "' is given twice");
     v.values.push_back(whole);
     value.clear();
   };

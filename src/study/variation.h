@@ -1,5 +1,5 @@
 #pragma once
-// Which runs a study is made of.
+// The runs of a study.
 
 #include <string>
 #include <utility>
@@ -23,7 +23,7 @@ using Setting = std::pair<std::string, std::string>;
 /// "resolution=0.04 viscosity=0".
 std::string settings_text(const std::vector<Setting>& settings);
 
-/// Runs along one key, all else being equal.
+/// Runs along one key, with all other keys fixed.
 struct StudyCurve {
   std::string key;
   std::vector<Setting> others;    ///< settings that all its runs share

@@ -148,7 +148,7 @@ def damaged(t, rng):
         (here / "checkpoint.h5").write_bytes(bytes_)
         (here / "checkpoint.prev.h5").write_bytes(bytes_)
         said = t.run(here, "--resume", expected=IO)
-        if "no sound checkpoint" not in said:
+        if "no intact checkpoint" not in said:
             t.fail(f"two {what} checkpoints: {said}")
 
 

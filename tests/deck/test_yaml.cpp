@@ -206,7 +206,7 @@ TEST_SUITE("deck") {
     CHECK_FALSE(read_text_file("/dev/zero", {}, found, false, 1000).has_value());
     CHECK(read_text_file("/dev/null", {}, found) == "");
     REQUIRE(found.items().size() == 4);
-    CHECK(found.items()[2].message.find("no regular file") != std::string::npos);
+    CHECK(found.items()[2].message.find("not a regular file") != std::string::npos);
     CHECK(found.items()[3].id == "E006");
     CHECK(found.items()[0].id == "E001");
     CHECK(found.items()[0].message.find("No such file") != std::string::npos);

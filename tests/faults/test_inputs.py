@@ -48,10 +48,10 @@ class Inputs(ProgramTest):
         self.write("b.yaml", "include: [a.yaml]\n")
         self.refused(["b.yaml:1:11: error", "'a.yaml' includes itself"], "a.yaml")
         self.write("zero.yaml", "include: [/dev/zero]\n" + DECK)
-        self.refused(["zero.yaml:1:11: error", "no regular file"], "zero.yaml")
+        self.refused(["zero.yaml:1:11: error", "not a regular file"], "zero.yaml")
         os.mkfifo(self.here / "pipe")
         self.write("pipe.yaml", "include: [pipe]\n" + DECK)
-        self.refused(["pipe.yaml:1:11: error", "no regular file"], "pipe.yaml")
+        self.refused(["pipe.yaml:1:11: error", "not a regular file"], "pipe.yaml")
         for k in range(30):
             self.write(f"deep{k}.yaml", f"include: [deep{k + 1}.yaml]\n" + (DECK if k == 0 else ""))
         self.refused(["deep20.yaml:1:11: error", "more than 20 levels"], "deep0.yaml")
@@ -63,7 +63,7 @@ class Inputs(ProgramTest):
         self.refused(["missing.yaml:5:62: error", "nowhere.stl", "not found"], "missing.yaml")
         self.write("cut.stl", (ROOT / "share/assets/ball.stl").read_bytes()[:-30])
         self.write("cut.yaml", HEAD + shape % "cut.stl")
-        self.refused(["cut.yaml:5:", "cut short"], "cut.yaml")
+        self.refused(["cut.yaml:5:", "truncated"], "cut.yaml")
         self.write("device.yaml", HEAD + shape % "/dev/zero")
         self.refused("not found", "device.yaml")
 
@@ -99,9 +99,9 @@ class Inputs(ProgramTest):
             self.write("utf16.yaml", ("\ufeff" + DECK).encode(name))
             self.refused(["utf16.yaml:1:1: error", "UTF-16"], "utf16.yaml")
         self.write("nul.yaml", DECK + "title: a\0b\n")
-        self.refused(["nul.yaml:6:9: error", "holds the byte 0"], "nul.yaml")
+        self.refused(["nul.yaml:6:9: error", "contains the byte 0"], "nul.yaml")
         self.write("escape.yaml", DECK + "title: \x1b[31mred\n")
-        self.refused(["escape.yaml:6:8: error", "holds the byte 27"], "escape.yaml")
+        self.refused(["escape.yaml:6:8: error", "contains the byte 27"], "escape.yaml")
         self.write("tab.yaml", DECK + "numerics:\n\tlimiter: 3\n")
         self.refused(["tab.yaml:7:", "blanks, not with tabs"], "tab.yaml")
         for wrong in (b"\xc0\x80", b"\xed\xa0\x80", b"\xf5\x80\x80\x80", b"\xe2\x82"):

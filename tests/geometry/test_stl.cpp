@@ -218,7 +218,7 @@ TEST_SUITE("geometry") {
     CHECK_THROWS_AS(read_stl(file.path), IoError);
     write_stl(file.path, cube_mesh());
     std::filesystem::resize_file(file.path, 300);
-    CHECK_THROWS_WITH(read_stl(file.path), doctest::Contains("cut short"));
+    CHECK_THROWS_WITH(read_stl(file.path), doctest::Contains("truncated"));
     std::ofstream(file.path) << "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 zero\n";
     CHECK_THROWS_WITH(read_stl(file.path), doctest::Contains("line 4"));
     std::ofstream(file.path) << "solid x\nfacet\nvertex 0 0 0\nvertex 0 1 0\nendfacet\n";

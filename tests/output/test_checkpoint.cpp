@@ -133,7 +133,7 @@ TEST_SUITE("output") {
     REQUIRE(found.warnings.size() == 1);
     CHECK(found.warnings[0].find("damaged") != std::string::npos);
     std::ofstream(previous, std::ios::binary) << "nothing";
-    CHECK_THROWS_WITH_AS(find_checkpoint(path, previous), doctest::Contains("no sound checkpoint"),
+    CHECK_THROWS_WITH_AS(find_checkpoint(path, previous), doctest::Contains("no intact checkpoint"),
                          IoError);
   }
 

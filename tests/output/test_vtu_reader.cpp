@@ -125,15 +125,15 @@ TEST_SUITE("output") {
         CHECK_MESSAGE(std::string(e.what()).find(because) != std::string::npos, e.what());
       }
     };
-    refused("", "no frame of sphgeo");
-    refused("<?xml version=\"1.0\"?>\n<VTKFile/>", "no frame of sphgeo");
+    refused("", "not a frame of sphgeo");
+    refused("<?xml version=\"1.0\"?>\n<VTKFile/>", "not a frame of sphgeo");
     refused(replaced(good, "LittleEndian", "BigEndian"), "byte order");
-    refused(replaced(good, "UnstructuredGrid", "PolyData"), "no unstructured grid");
+    refused(replaced(good, "UnstructuredGrid", "PolyData"), "not an unstructured grid");
     refused(replaced(good, "ZLib", "LZ4"), "compressor");
     refused(replaced(good, "NumberOfPoints=\"3000\"", "NumberOfPoints=\"3001\""), "not as long");
     refused(replaced(good, "NumberOfPoints=\"3000\"", "NumberOfPoints=\"99999999999999999\""),
             "too much memory");
-    refused(replaced(good, "NumberOfPoints=\"3000\"", "NumberOfPoints=\"3e3\""), "no number");
+    refused(replaced(good, "NumberOfPoints=\"3000\"", "NumberOfPoints=\"3e3\""), "not a number");
     refused(replaced(good, "NumberOfComponents=\"3\"", "NumberOfComponents=\"0\""), "components");
     refused(replaced(good, "offset=\"0\"", "offset=\"99999999\""), "beyond the end");
     refused(

@@ -50,9 +50,9 @@ TEST_CASE("an order above two is not taken further than two") {
 }
 
 TEST_CASE("without a ladder there is no price") {
-  CHECK(says(price_of_spacing(std::vector<Offer>{{"1", 1, 1, 0.1}}, per_cent), "no ladder"));
+  CHECK(says(price_of_spacing(std::vector<Offer>{{"1", 1, 1, 0.1}}, per_cent), "a single run"));
   CHECK(says(price_of_spacing(std::vector<Offer>{{"1", 1, 1, {}}, {"2", 0.5, 1, {}}}, per_cent),
-             "no ladder"));
+             "a single run"));
 }
 
 TEST_CASE("settings of another key: the cheapest within tolerance is named") {
