@@ -178,7 +178,8 @@ int main(int argc, char** argv) {
   CLI::Option* overwrite =
       run_app->add_flag("--overwrite", run.overwrite, "replace the results in the folder");
   run_app
-      ->add_flag("--resume", run.resume, "go on from the checkpoint in the folder, if there is one")
+      ->add_flag("--resume", run.resume,
+                 "continue from the checkpoint in the folder, if there is one")
       ->excludes(overwrite);
   run_app
       ->add_option("--max-hours", run.limits.max_hours,
@@ -204,13 +205,13 @@ int main(int argc, char** argv) {
   CLI::App* check_app = app.add_subcommand("check", "check a deck without running it");
   add_deck(check_app, check.deck, check.set);
   check_app->add_flag("--explain", check.explain,
-                      "print the plan: what runs and why, lists, fields, memory");
+                      "print the plan: effects and why they run, lists, fields, memory");
   check_app->add_flag("--json", check.json, "the plan and the forecast as JSON");
-  check_app->add_option("--preview", check.preview, "paint the scene before it runs into this PNG")
+  check_app->add_option("--preview", check.preview, "draw the scene at t = 0 into this PNG")
       ->type_name("FILE");
   check_app->add_flag_callback(
       "--no-calibrate", [&] { check.calibrate = false; },
-      "do not time a few steps: the forecast says nothing of the time");
+      "do not time a few steps: no forecast of the time");
   check_app->add_option("--threads", check.threads, "number of threads of the forecast run")
       ->check(whole)
       ->type_name("N");
@@ -229,7 +230,7 @@ int main(int argc, char** argv) {
   relax_app->add_flag("--overwrite", relax.overwrite, "replace the results in the folder");
   relax_app->add_flag("--verify", relax.verify,
                       "exit with 4 when a result about the relaxation under 'expect' is not met");
-  relax_app->add_flag("-q,--quiet", relax.quiet, "say nothing but results");
+  relax_app->add_flag("-q,--quiet", relax.quiet, "print only results");
   relax_app->callback([&] { code = run_guarded([&] { return relax_command(relax); }); });
 
   ExportOptions exported;
@@ -243,13 +244,13 @@ int main(int argc, char** argv) {
   export_app->add_flag("--overwrite", exported.overwrite, "replace the file if it exists");
   export_app
       ->add_option("--spacing", exported.spacing,
-                   "of the grid that finds the surface, m (default: half the resolution)")
+                   "spacing of the grid that finds the surface, m (default: half the resolution)")
       ->type_name("S");
   export_app->callback([&] { code = run_guarded([&] { return export_command(exported); }); });
 
   StudyOptions study;
-  CLI::App* study_app = app.add_subcommand(
-      "study", "run a deck with different settings: what accuracy costs in time");
+  CLI::App* study_app =
+      app.add_subcommand("study", "run a deck with different settings: accuracy against time");
   add_deck(study_app, study.deck, study.set);
   study_app
       ->add_option(
@@ -276,7 +277,7 @@ int main(int argc, char** argv) {
       ->add_option("--max-hours", study.max_hours, "stop, resumable, before this wall time is over")
       ->check(above_zero<double>("a number"))
       ->type_name("H");
-  study_app->add_flag("-q,--quiet", study.quiet, "say nothing but results");
+  study_app->add_flag("-q,--quiet", study.quiet, "print only results");
   study_app->callback([&] { code = run_guarded([&] { return study_command(study); }); });
 
   CompareOptions compare;
@@ -315,7 +316,7 @@ int main(int argc, char** argv) {
 
   std::string type;
   CLI::App* show_app = app.add_subcommand(
-      "show", "print the keys of a type or section, or what an effect or field is");
+      "show", "print the keys of a type or section, or describe an effect or field");
   show_app->add_option("type", type, "a name that 'sphgeo list' prints")
       ->required()
       ->type_name("TYPE");
@@ -333,20 +334,22 @@ int main(int argc, char** argv) {
       app.add_subcommand("bench", "measure the speed of the pair loops on fixed scenes");
   bench_app->add_flag("--json", bench.json, "print JSON");
   bench_app->add_flag("--effects", bench.effects,
-                      "measure what effects would cost that a scene does not call for");
+                      "measure the cost of effects that a scene does not need");
   bench_app->add_option("--scene", bench.scenes, "only this scene; may be repeated")
       ->allow_extra_args(false)
       ->type_name("NAME");
   bench_app->add_option("--size", bench.sizes, "particles (default: 20000 150000 1000000)")
       ->check(whole)
       ->type_name("N");
-  bench_app->add_option("--precision", bench.precision, "of the pair sums: single, double or both")
+  bench_app
+      ->add_option("--precision", bench.precision,
+                   "precision of the pair sums: single, double or both")
       ->check(CLI::IsMember({"single", "double", "both"}))
       ->type_name("WORD");
-  bench_app->add_option("--seconds", bench.seconds, "of measuring in each repeat")
+  bench_app->add_option("--seconds", bench.seconds, "seconds of measuring in each repeat")
       ->check(above_zero<double>("a number"))
       ->type_name("S");
-  bench_app->add_option("--repeats", bench.repeats, "repeats; the best counts")
+  bench_app->add_option("--repeats", bench.repeats, "number of repeats; the best is reported")
       ->check(whole)
       ->type_name("N");
   bench_app->callback([&] { code = run_guarded([&] { return bench_command(bench); }); });

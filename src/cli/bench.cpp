@@ -24,7 +24,7 @@ namespace {
 
 using clock_type = std::chrono::steady_clock;
 
-/// A fixed scene: how its deck reads for about n particles.
+/// A fixed scene: its deck for about n particles.
 struct BenchScene {
   const char* name;
   std::string (*deck)(long n);
@@ -35,7 +35,7 @@ struct BenchScene {
 
 std::string water_block(long n, double h_factor) {
   const int cells = std::max(4, static_cast<int>(std::lround(std::cbrt(static_cast<double>(n)))));
-  // A free block with a smooth velocity field: every pair term is at work, nothing else is.
+  // A free block with a smooth velocity field: all pair terms are active, and nothing else.
   return fmt::format(
       "dimension: 3\nresolution: 1\ngravity: [0, 0, 0]\nend_time: 1e6\n"
       "materials: [{{name: water, type: water, sound_speed: 10, viscosity: 0.1}}]\n"
@@ -48,7 +48,7 @@ std::string water_block(long n, double h_factor) {
 
 std::string soil_block(long n) {
   const int cells = std::max(4, static_cast<int>(std::lround(std::cbrt(static_cast<double>(n)))));
-  // As the block of water; the strength is such that part of it yields.
+  // As the block of water; the strength is such that a part is plastic.
   return fmt::format(
       "dimension: 3\nresolution: 1\ngravity: [0, 0, 0]\nend_time: 1e6\n"
       "materials: [{{name: soil, type: soil, density: 1000, volume_fraction: 1, youngs_modulus: "
@@ -111,8 +111,8 @@ const BenchScene scenes[] = {
     {"dam_break", dam_break, 1.8, std::nullopt, std::nullopt},
 };
 
-/// A fixed loop of multiply-adds in registers, one thread: tells how fast the machine is this
-/// moment, GFlop/s.
+/// A fixed loop of multiply-adds in registers, one thread: measures the present speed of the
+/// machine, GFlop/s.
 double calibrate() {
   using L = Lanes<float>;
   L a[8];
@@ -133,7 +133,7 @@ struct Measured {
   double updates_all = 0;  ///< with rearrangements and reinitialization
   double pairs = 0;        ///< pair interactions per s and core
   double search_ns = 0;    ///< sort, grid and lists, per particle
-  double bytes = 0;        ///< per particle that is no wall
+  double bytes = 0;        ///< per particle, without those of walls
   double calibration = 0;
   long particles = 0;
 };
@@ -170,8 +170,7 @@ Measured measure(const std::string& deck, int thread_count, const BenchOptions& 
                          stepper.particle_updates() == updates0;
                 }});
     const double updates = stepper.particle_updates() - updates0;
-    // One thread is charged only the time that it had a processor, so that other programs disturb
-    // less.
+    // For one thread only its processor time is counted, so that other programs disturb less.
     const double wall = seconds_since(start);
     const double had =
         thread_count == 1 ? std::min(1.0, (processor_seconds() - processor0) / wall) : 1.0;

@@ -1,5 +1,5 @@
-// `sphgeo bench --effects`: a scene as it is planned, and the same with effects forced on that it
-// does not call for.
+// `sphgeo bench --effects`: a scene as planned, and the same with effects added that it does not
+// need.
 
 #include <fmt/format.h>
 
@@ -23,20 +23,20 @@
 namespace sphgeo {
 namespace {
 
-/// A change of a scene that calls for more.
+/// A change of a scene that needs more effects.
 struct Forcing {
   const char* what;
   std::string materials, bodies, numerics;  ///< added to the deck's lists
   bool all_fields =
-      false;  ///< every field that an effect can compute is asked for, each advection step
+      false;  ///< every field that an effect can compute is requested in each advection step
   const char* at_body = "";  ///< keys added to the scene's own body
 };
 
-/// A scene, and what it is forced to.
+/// A scene, and the additions to it.
 struct EffectScene {
   const char* name;
   std::string materials, body, boundaries;
-  double end;  ///< of the scene along x, m: what is added far away lies beyond
+  double end;  ///< of the scene along x, m: distant bodies lie beyond
   std::vector<Forcing> forcings;
 };
 
@@ -57,7 +57,7 @@ std::string deck(const EffectScene& scene, const Forcing* forced) {
   return text;
 }
 
-/// About n particles each. Without gravity, so that what is far away stays there.
+/// About n particles each. Without gravity, so that distant bodies stay there.
 std::vector<EffectScene> effect_scenes(long n) {
   const int c = std::max(6, static_cast<int>(std::lround(std::cbrt(static_cast<double>(n)))));
   const std::string water = "  - {name: water, type: water, sound_speed: 10, viscosity: 0.1}\n";
@@ -112,7 +112,7 @@ std::vector<EffectScene> effect_scenes(long n) {
   };
 }
 
-/// Wishes for all that supporting effects can compute in this world.
+/// Requests for all fields that supporting effects can compute in this world.
 std::vector<Wish> all_wishes(const World<3>& world) {
   std::vector<Wish> wishes;
   for (const auto& entry : EffectRegistry::all()) {
@@ -135,7 +135,7 @@ class Stand {
     stepper_->run(0.0, {[] { return false; }});  // the first lists
   }
 
-  /// Steps for about so many seconds; keeps the least processor time for a second of the scene:
+  /// Steps for about so many seconds; keeps the smallest processor time for a second of the scene:
   /// steps differ in length.
   void run(double seconds) {
     const auto start = std::chrono::steady_clock::now();
@@ -212,8 +212,8 @@ int bench_effects_command(const BenchOptions& options) {
   nlohmann::ordered_json j = {{"version", version()}, {"scenes", nlohmann::ordered_json::array()}};
   if (!options.json)
     fmt::print(
-        "one thread; processor time for the same simulated time, least of {} tries of {} s;\n"
-        "each line beside the scene as planned, in turn\n",
+        "one thread; processor time for the same simulated time, smallest of {} repeats of {} s;\n"
+        "each line relative to the scene as planned, measured alternately\n",
         options.repeats, options.seconds);
   for (const EffectScene& scene : scenes) {
     if (!options.scenes.empty() &&

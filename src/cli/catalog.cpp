@@ -67,7 +67,7 @@ CatalogEntry section() {
   P object;
   const SchemaCore& schema = schema_of<P>();
   CatalogEntry e = entry_of(schema.type_name(), schema.sentence(), {{&schema, &object}});
-  // Sections of the deck by default hold the defaults of their own keys, which stand there.
+  // The default of a section are the defaults of its own keys, which are listed there.
   for (KeyFacts& k : e.keys)
     if (k.otherwise.starts_with('{') && k.otherwise != "{}") k.otherwise.clear();
   return e;
@@ -89,8 +89,8 @@ CatalogGroup types(const RegistryCore& registry, const std::string& heading,
 CatalogGroup effects() {
   CatalogGroup g{"effect",
                  "effects",
-                 "Terms of the equations, selected by what the scene holds. `check --explain` "
-                 "shows which of them a deck calls for.",
+                 "Terms of the equations, selected by the contents of the scene. `check --explain` "
+                 "shows which of them a deck uses.",
                  {}};
   for (const EffectRegistry::Entry& e : EffectRegistry::all())
     g.entries.push_back(
@@ -100,7 +100,7 @@ CatalogGroup effects() {
          {{"stage", stage_name(e.info.stage)},
           {"equations", e.info.equations},
           {"runs", e.info.supporting ? "when an effect, a probe or a frame reads what it computes"
-                                     : "whenever the scene has what it acts on"},
+                                     : "when the scene has what it acts on"},
           {"without it", e.info.when_off.empty() ? "cannot be switched off" : e.info.when_off}}});
   return g;
 }
@@ -130,7 +130,7 @@ CatalogGroup fields_group() {
 }  // namespace
 
 std::vector<CatalogGroup> catalog() {
-  // Taken in before bodies are read, and so no key that they declare.
+  // Expanded before bodies are read, and therefore not among their declared keys.
   CatalogEntry body = section<Body>();
   body.keys.push_back(
       {"copies", "makes many bodies of this one", "", "a mapping of the keys of 'copies'", "none"});
@@ -145,9 +145,9 @@ std::vector<CatalogGroup> catalog() {
                 "What bodies are made of: entries of `materials`."),
           types(Registry<Shape>::get(), "shapes", "Regions of space, for bodies and walls."),
           types(Registry<BoundarySpec>::get(), "boundaries",
-                "Borders of the scene: entries of `boundaries`."),
+                "Boundaries of the scene: entries of `boundaries`."),
           types(Registry<ProbeSpec>::get(), "probes",
-                "What is measured while the scene runs: entries of `probes`."),
+                "Measurements during a run: entries of `probes`."),
           effects(),
           fields_group()};
 }

@@ -1,6 +1,5 @@
 #pragma once
-// What decks and plans are made of, from the declarations themselves: for `list`, `show` and
-// `reference`.
+// The elements of decks and plans, from their declarations: for `list`, `show` and `reference`.
 
 #include <string>
 #include <utility>
@@ -12,7 +11,7 @@ namespace sphgeo {
 struct KeyFacts {
   std::string name, sentence;
   std::string equation;   ///< of the paper; "" when there is none
-  std::string accepts;    ///< what the deck may hold here: kind, unit, range
+  std::string accepts;    ///< accepted values: kind, unit, range
   std::string otherwise;  ///< the default as a deck may hold it; "" when there is none
   bool required = false;
   bool changeable = false;  ///< may differ when a run is resumed
@@ -34,7 +33,7 @@ struct CatalogGroup {
   std::vector<CatalogEntry> entries;
 };
 
-/// Everything there is.
+/// All entries.
 std::vector<CatalogGroup> catalog();
 
 }  // namespace sphgeo

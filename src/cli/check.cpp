@@ -57,7 +57,7 @@ nlohmann::ordered_json plan_json(const auto& world, const auto& plan) {
 }
 
 void print_plan(const nlohmann::ordered_json& j) {
-  std::cout << fmt::format("\nplan: what runs, and why\n");
+  std::cout << fmt::format("\nplan: effects, and why they run\n");
   for (const auto& e : j["plan"])
     std::cout << fmt::format("  {:<13} {:<24} {:<22} {:<18} {}\n", e["stage"].get<std::string>(),
                              e["name"].get<std::string>(), e["equations"].get<std::string>(),
@@ -83,7 +83,7 @@ void print_plan(const nlohmann::ordered_json& j) {
   std::cout << fmt::format("\nmemory {}\n", bytes_text(j["memory_bytes"].get<double>()));
 }
 
-/// What a run would cost; with the time unless `--no-calibrate`. Moves the world on.
+/// The cost of a run; with the time unless `--no-calibrate`. Advances the world.
 template <int Dim>
 std::optional<Forecast> forecast_of(World<Dim>& world, Plan<Dim>& plan, const SoundSpeed& sound,
                                     const std::vector<Wish>& wishes, std::uint64_t base,
@@ -95,8 +95,8 @@ std::optional<Forecast> forecast_of(World<Dim>& world, Plan<Dim>& plan, const So
   if (options.calibrate && basis.advection_steps() > 0) {
     costs = measure_costs<Dim>(world, plan, wishes, started, basis.advection_steps());
     if (!costs)
-      std::cerr << "warning: the scene does not survive its first steps, so that nothing is said "
-                   "about the time\n";
+      std::cerr
+          << "warning: the scene becomes unstable in its first steps; the time is not forecast\n";
   }
   return basis(costs);
 }
@@ -107,7 +107,7 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
   Diagnostics found = model.warnings;
   Scene<Dim> scene = build_scene<Dim>(model, found, Filling::draft);
   check_scene(scene, found);
-  // Also of a scene with mistakes: there a picture helps most.
+  // Also for a scene with mistakes, where a picture is most useful.
   const std::string preview =
       options.preview.empty() ? "" : write_preview<Dim>(*scene.world, options.preview);
   if (found.has_errors()) throw DeckError(found);
@@ -173,10 +173,10 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
   if (forecast) std::cout << fmt::format("{}", render_forecast(*forecast, model.resolution));
   if (const double entering = entering_particles(model); entering > 0)
     std::cout << fmt::format(
-        "inlets bring in about {:.3g} particles of water until the end: the forecast takes all of "
+        "inlets insert about {:.3g} particles of water until the end: the forecast counts all of "
         "them for the memory, half of them for the time\n",
         entering);
-  std::cout << fmt::format("the deck is sound\n");
+  std::cout << fmt::format("the deck is correct\n");
   return 0;
 }
 

@@ -92,7 +92,7 @@ std::string run_children(std::vector<ChildRun>& runs, int jobs,
       }
       if (!ended) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-  } catch (...) {  // no run goes on without its study
+  } catch (...) {  // runs end with their study
     stop_all();
     for (const auto& [pid, k] : running) ::waitpid(pid, nullptr, 0);
     throw;

@@ -13,9 +13,9 @@ struct RunOptions {
   std::string deck;
   std::string folder;
   std::vector<std::string> set;
-  int threads = 0;  ///< 0: a sensible number for the scene
+  int threads = 0;  ///< 0: chosen for the scene
   bool overwrite = false;
-  bool resume = false;  ///< go on from the checkpoint in the folder, if there is one
+  bool resume = false;  ///< continue from the checkpoint in the folder, if there is one
   RunLimits limits;
   bool verify = false;  ///< exit 4 when an `expect` is not met
   bool quiet = false;
@@ -30,7 +30,7 @@ struct CheckOptions {
   bool json = false;
   std::string preview;    ///< a PNG of the scene; empty: none
   bool calibrate = true;  ///< time a few steps for the forecast
-  int threads = 0;        ///< that the run would have; 0: a sensible number for the scene
+  int threads = 0;        ///< that the run would have; 0: chosen for the scene
 };
 int check_command(const CheckOptions& options);
 
@@ -45,7 +45,7 @@ struct RelaxOptions {
   std::string deck;
   std::string folder;
   std::vector<std::string> set;
-  int threads = 0;  ///< 0: all that the machine has
+  int threads = 0;  ///< 0: all of the machine
   bool overwrite = false;
   bool verify = false;  ///< exit 4 when a claim about the relaxation is not met
   bool quiet = false;
@@ -76,7 +76,7 @@ struct StudyOptions {
   std::optional<double> max_hours;
   bool quiet = false;
 };
-/// Runs a deck with different settings and says what accuracy costs in time. Runs that are in the
+/// Runs a deck with different settings and reports accuracy against time. Runs that are in the
 /// folder already are used again. Throws Error (usage), DeckError, IoError.
 int study_command(const StudyOptions& options);
 
@@ -99,7 +99,7 @@ struct BenchOptions {
   std::string precision = "both";   ///< single | double | both
   double seconds = 2;               ///< of measuring per repeat
   int repeats = 5;
-  bool effects = false;  ///< what effects would cost that the scenes do not call for
+  bool effects = false;  ///< cost of effects that the scenes do not need
 };
 int bench_command(const BenchOptions& options);
 /// The part --effects of it.
@@ -109,9 +109,9 @@ int schema_command();
 
 /// Prints the names of deck sections, types, effects and fields.
 int list_command();
-/// Prints all about whatever has this name. Throws Error (usage) when nothing has.
+/// Describes everything of this name. Throws Error (usage) when there is none.
 int show_command(const std::string& type);
-/// Prints all about all of them as Markdown.
+/// Describes all of them as Markdown.
 int reference_command();
 
 /// The version of this build with commit, compiler, width of vectors, threads and libraries, as

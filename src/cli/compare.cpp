@@ -21,7 +21,7 @@ int compare_command(const CompareOptions& options) {
                   printable(options.baseline) + ": --update writes a file, and this is a folder");
     if (run.status != "done")
       throw Error(ExitCode::usage, printable(options.run) + ": a run that is '" +
-                                       printable(run.status) + "' is no baseline");
+                                       printable(run.status) + "' is not a baseline");
     write_baseline(options.baseline, run);
     std::cerr << fmt::format("{}: written from {}\n", printable(options.baseline),
                              printable(options.run));

@@ -15,7 +15,7 @@
 namespace sphgeo {
 namespace {
 
-/// The solid that goes by a name in the deck; throws Error (usage) when there is none.
+/// The solid of that name in the deck; throws Error (usage) when there is none.
 std::shared_ptr<const Shape> solid_named(const Model& model, const std::string& name) {
   std::vector<std::string> names;
   for (const Body& body : model.bodies) {
@@ -41,12 +41,12 @@ int export_command(const ExportOptions& options) {
   const Model model = read_deck(options.deck, options.set);
   if (model.dimension != 3)
     throw Error(ExitCode::usage,
-                "STL is for scenes in 3D; --set dimension=3 may make one of this deck");
+                "STL needs a scene in 3D; --set dimension=3 may make this deck one");
   const auto solid = solid_named(model, options.name);
   const double spacing = options.spacing.value_or(0.5 * model.resolution);
   if (!(spacing > 0))
     throw Error(ExitCode::usage,
-                fmt::format("--spacing {} is no length above zero", exact(spacing)));
+                fmt::format("--spacing {} is not a length above zero", exact(spacing)));
   if (!options.overwrite && std::filesystem::exists(options.output))
     throw Error(ExitCode::usage,
                 fmt::format("{} exists; --overwrite replaces it", printable(options.output)));

@@ -100,8 +100,8 @@ int reference_command() {
       "reader of decks uses; `sphgeo show NAME` prints one of them.\n\n"
       "Numbers are in SI units; a number with a unit, such as `18 kPa` or `30 deg`, is accepted "
       "where the dimension\n"
-      "fits, and so are formulas of the deck's `variables`. `auto` stands for what the key's "
-      "sentence says.\n");
+      "fits, and so are formulas of the deck's `variables`. `auto` is explained in the key's "
+      "description.\n");
   for (const CatalogGroup& group : catalog()) {
     std::cout << fmt::format("\n## {}{}\n\n{}\n\n", static_cast<char>(group.heading[0] - 'a' + 'A'),
                              group.heading.substr(1), group.sentence);

@@ -32,10 +32,11 @@ constexpr int wall = 0, probe = 1, water = 2, soil = 3, solid = 4, solids = 4;
 }
 
 constexpr int most_width = 1400, most_height = 1000;  // pixels
-/// How far around the particles the picture shows walls and probes, by the size of what they fill.
+/// Margin around the particles in which walls and probes are shown, over the extent of the
+/// particles.
 constexpr double reach = 4;
 
-/// The places of all probes that have one.
+/// The positions of all probes that have one.
 template <int Dim>
 std::vector<Vec3> probe_places(const Model& model) {
   std::vector<Vec3> places;
@@ -67,7 +68,7 @@ std::string write_preview(const World<Dim>& world, const std::string& path) {
   Aabb box = picture_box(particles, surroundings, reach);
   if (box.empty())
     box = {Vec3::Constant(-model.resolution),
-           Vec3::Constant(model.resolution)};  // only material points, say
+           Vec3::Constant(model.resolution)};  // for example only material points
 
   std::vector<Color> palette;
   for (const NamedColor& c : colors) palette.push_back(c.color);
@@ -108,7 +109,7 @@ std::string write_preview(const World<Dim>& world, const std::string& path) {
   if (!walls.part.empty()) name("boundaries", color_number::wall);
   if (!probes.empty()) name("probes", color_number::probe);
   Picture picture = painter.picture();
-  picture.palette.front() = {1, 1, 1, 1};  // seen on any screen
+  picture.palette.front() = {1, 1, 1, 1};  // visible on any screen
   write_file_atomically(path, png(picture));
   return legend;
 }

@@ -107,10 +107,8 @@ int relax_command(const RelaxOptions& options) {
   Diagnostics found = model.warnings;
   const std::optional<PoreBodies> pores = pore_bodies(model);
   if (!pores)
-    throw Error(
-        ExitCode::usage,
-        options.deck +
-            ": no water of this deck starts in the pores of soil: there is nothing to relax");
+    throw Error(ExitCode::usage,
+                options.deck + ": the deck has no pore water at t = 0: there is nothing to relax");
   const FolderLock lock(options.folder);
   const RunFolder folder(options.folder,
                          options.overwrite ? ExistingResults::overwrite : ExistingResults::refuse);

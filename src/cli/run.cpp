@@ -34,7 +34,7 @@ ProgressState progress_of(const Model& model, const Clock& c, Index particles, d
           wall};
 }
 
-/// What --resume finds in the folder: a checkpoint, or nothing to go on from.
+/// What --resume finds in the folder: a checkpoint, or nothing to continue from.
 FoundCheckpoint checkpoint_of(const RunOptions& options, const Model& model) {
   if (!options.resume || !holds_results(options.folder)) return {};
   const std::string folder = options.folder;
@@ -71,7 +71,7 @@ class DeckRun {
     std::vector<std::string> names;
     for (const auto& set : world.sets()) names.push_back(set->name());
 
-    // Without a checkpoint, what a resumed run finds in its folder is of no use to it.
+    // Without a checkpoint, the contents of the folder cannot be used by a resumed run.
     const RunFolder folder(options_.folder, resumed ? ExistingResults::resume
                                             : options_.overwrite || options_.resume
                                                 ? ExistingResults::overwrite
@@ -89,7 +89,7 @@ class DeckRun {
       wall_before_ = resumed->number("wall_seconds");
       steps_before_ = world.clock.advection_steps;
       acoustic_before_ = world.clock.acoustic_steps;
-      std::cerr << fmt::format("going on from t = {:.6g} s, advection step {} ({})\n",
+      std::cerr << fmt::format("continuing from t = {:.6g} s, advection step {} ({})\n",
                                world.clock.time, steps_before_, printable(checkpoint.path));
     }
     write_file_atomically(folder.resolved_deck(), resolved_yaml(model_));
@@ -113,8 +113,7 @@ class DeckRun {
     double asked_at = seconds_since(start_), longest_wait = 0;  // s
     const auto ask = [&](double wall, std::optional<long> steps) {
       longest_wait = std::max(longest_wait, wall - std::exchange(asked_at, wall));
-      // What ending takes: one more wait, and the checkpoint (an unknown one is guessed to be
-      // slow).
+      // Time to stop: one more step, and the checkpoint (of unknown duration: assumed to be slow).
       const double reserve =
           longest_wait + (keeper.count() > 0 ? keeper.last_seconds()
                                              : 1e-7 * static_cast<double>(world.bytes()) / 100);
@@ -183,7 +182,7 @@ class DeckRun {
     summary_.deck = options_.deck;
     summary_.deck_hash = deck_hash(model_);
     summary_.dimension = Dim;
-    // As they are now: what a run began with is not known to one that goes on.
+    // As they are now: the settings at the start are not known to a resumed run.
     for (const auto& set : world.sets()) summary_.particles.emplace_back(set->name(), set->size());
     summary_.threads = threads();
     summary_.advection_steps = world.clock.advection_steps;
@@ -228,14 +227,14 @@ class DeckRun {
     if (options_.report) write_page(folder);
   }
 
-  /// The page comes last: whatever goes wrong with it, the results are there, and the page can be
-  /// made again from them.
+  /// The page is written last: if it fails, the results are complete and the page can be made from
+  /// them.
   void write_page(const RunFolder& folder) {
     try {
       write_report({options_.folder}, folder.report());
     } catch (const std::exception& e) {
       std::cerr << "warning: there is no report.html: " << printable(e.what())
-                << "; 'sphgeo report " << printable(options_.folder) << "' makes it again\n";
+                << "; 'sphgeo report " << printable(options_.folder) << "' writes it again\n";
       if (summary_.exit_code == 0 && dynamic_cast<const IoError*>(&e))
         summary_.exit_code = static_cast<int>(ExitCode::io);
     }
@@ -263,12 +262,12 @@ class DeckRun {
       std::cout << render_expectations(summary_.expect);
     if (summary_.status == "stopped")
       std::cerr << fmt::format(
-          "stopped at t = {:.6g} s: {}; the same command with --resume goes on\n", summary_.time_s,
-          summary_.message);
+          "stopped at t = {:.6g} s: {}; the same command with --resume continues the run\n",
+          summary_.time_s, summary_.message);
     else if (!summary_.message.empty())
       std::cerr << "error: " << printable(summary_.message, "\n") << "\n"
                 << (summary_.checkpoint.count > 0
-                        ? "the last checkpoint is sound: " + printable(folder.checkpoint()) + "\n"
+                        ? "the last checkpoint is intact: " + printable(folder.checkpoint()) + "\n"
                         : "");
   }
 

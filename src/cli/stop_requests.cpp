@@ -10,7 +10,7 @@
 namespace sphgeo {
 namespace {
 
-// A signal handler can reach nothing but a variable of static life.
+// A signal handler can only access variables of static storage.
 volatile std::sig_atomic_t signals_seen = 0;
 volatile std::sig_atomic_t last_signal = 0;
 
@@ -25,10 +25,10 @@ void on_signal(int number) {
 void take_signals(void (*handler)(int)) {
   struct sigaction action {};
   action.sa_handler = handler;
-  action.sa_flags = SA_RESTART;  // a write that is under way is not cut short
+  action.sa_flags = SA_RESTART;  // a write in progress is not interrupted
   sigemptyset(&action.sa_mask);
   for (const int number : {SIGINT, SIGTERM}) ::sigaction(number, &action, nullptr);
-  // A terminal that is closed ends a run in order, unless nohup has said otherwise.
+  // A closed terminal stops a run in order, unless nohup is used.
   struct sigaction before {};
   if (::sigaction(SIGHUP, nullptr, &before) == 0 && before.sa_handler != SIG_IGN)
     ::sigaction(SIGHUP, &action, nullptr);
@@ -50,17 +50,17 @@ std::string StopRequests::reason(double wall_seconds, double reserve_seconds,
   if (signals_seen > 0)
     return last_signal == SIGINT   ? "interrupted (SIGINT)"
            : last_signal == SIGHUP ? "its terminal was closed (SIGHUP)"
-                                   : "asked to end (SIGTERM)";
+                                   : "terminated (SIGTERM)";
   if (limits_.max_steps && steps && *steps >= *limits_.max_steps)
     return fmt::format("--max-steps {} reached", *limits_.max_steps);
   if (limits_.max_acoustic_steps && acoustic_steps >= *limits_.max_acoustic_steps)
     return fmt::format("--max-acoustic-steps {} reached", *limits_.max_acoustic_steps);
-  // A hundredth is left for what nobody measured.
+  // A margin of a hundredth for unmeasured times.
   if (limits_.max_hours && wall_seconds + reserve_seconds >= 0.99 * 3600 * *limits_.max_hours)
     return fmt::format("--max-hours {} reached", *limits_.max_hours);
   if (::access(stop_file_.c_str(), F_OK) == 0) {
     ::unlink(stop_file_.c_str());
-    return "the file '" + stop_file_ + "' asked for it";
+    return "the file '" + stop_file_ + "' requests it";
   }
   return "";
 }

@@ -45,7 +45,7 @@ std::string machine_name() {
                      std::max(1u, std::thread::hardware_concurrency()));
 }
 
-/// The first line of a log that says what was wrong, else the last line.
+/// The first line of a log with an error, else the last line.
 std::string complaint_in(const std::string& log) {
   std::ifstream file(log);
   std::string last;
@@ -56,7 +56,7 @@ std::string complaint_in(const std::string& log) {
   return last;
 }
 
-/// All that a run depends on but the program itself: the deck, with probes and end time, and the
+/// All inputs of a run except the program: the deck, with probes and end time, and the
 /// files that it names. A run is used again only if it would be the same.
 std::string what_decides(const Model& model) {
   const std::string deck = resolved_yaml(model);
@@ -103,7 +103,7 @@ class StudyCommand {
         [&](std::size_t k) { ended(k); });
     write(stopped, wall());
     if (!stopped.empty() || stopped_runs_ > 0) {
-      std::cerr << fmt::format("stopped: {}; the same command goes on\n",
+      std::cerr << fmt::format("stopped: {}; the same command continues the study\n",
                                printable(stopped.empty() ? "a run was stopped" : stopped));
       return static_cast<int>(ExitCode::stopped);
     }
@@ -127,7 +127,7 @@ class StudyCommand {
       for (std::size_t k = 0; k + 1 < study_.varied.size(); ++k)
         if (study_.varied[k].key == study_.varied.back().key)
           throw Error(ExitCode::usage,
-                      "--vary '" + printable(study_.varied.back().key) + "' stands there twice");
+                      "--vary '" + printable(study_.varied.back().key) + "' is given twice");
     }
     study_.design =
         options_.combine ? all_combinations(study_.varied) : one_at_a_time(study_.varied);
@@ -172,7 +172,7 @@ class StudyCommand {
   }
 
   void queue_missing() {
-    // The short runs first: what they tell is there while the long ones go on.
+    // The short runs first: their results are available while the long ones run.
     std::vector<std::size_t> order(study_.runs.size());
     for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
@@ -217,7 +217,7 @@ class StudyCommand {
       what = run.record.status + ": " + run.record.message;
     }
     tell(fmt::format("  {}: {}\n", printable(settings_text(run.settings)), printable(what)));
-    write_json();  // what is known so far is there, whatever happens to the rest
+    write_json();  // the results so far are kept if a later run fails
   }
 
   void write_json() const {

@@ -1,4 +1,4 @@
-// What this build is: its version, and for `--version` everything that a report of a fault needs.
+// What this build is: its version, and for `--version` the information for bug reports.
 
 #include <H5public.h>
 #include <fmt/format.h>
@@ -41,8 +41,7 @@ std::string hdf5() {
 }  // namespace
 
 std::string version_text() {
-  // Versions of libraries are those that run where they can be asked, else those that it was built
-  // with.
+  // Versions of libraries are those loaded where they can be queried, else those of the build.
   return fmt::format(
       "sphgeo {}\n"
       "commit     {}\n"

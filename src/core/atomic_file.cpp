@@ -25,7 +25,7 @@ int write_fully(int descriptor, const char* data, std::size_t bytes) {
     const ssize_t n = ::write(descriptor, data, bytes);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) return errno;
-    if (n == 0) return ENOSPC;  // no system does this, but waiting for it to stop would be for ever
+    if (n == 0) return ENOSPC;  // no known system does this, but it would be an endless loop
     data += n;
     bytes -= static_cast<std::size_t>(n);
   }
@@ -33,8 +33,8 @@ int write_fully(int descriptor, const char* data, std::size_t bytes) {
 }
 
 /// Hands whole pages to the disk without a copy in the system's cache, which takes ten times the
-/// processor time. Returns how many bytes it wrote: fewer than all, or none, where the file system,
-/// the memory or the place in the file is not made for that.
+/// processor time. Returns how many bytes it wrote: fewer than all, or none, where file system,
+/// memory alignment or file offset do not allow it.
 std::size_t write_directly([[maybe_unused]] int descriptor, [[maybe_unused]] const char* data,
                            [[maybe_unused]] std::size_t bytes,
                            [[maybe_unused]] std::uint64_t offset) {
@@ -49,7 +49,7 @@ std::size_t write_directly([[maybe_unused]] int descriptor, [[maybe_unused]] con
   while (done < whole) {
     const ssize_t n = ::write(descriptor, data + done, whole - done);
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) break;  // the usual way follows, and says what is wrong
+    if (n <= 0) break;  // the usual write follows, and reports the error
     done += static_cast<std::size_t>(n);
     if (done % page != 0) break;
   }
@@ -120,7 +120,7 @@ void AtomicFile::write(const void* data, std::size_t bytes) {
 
 void AtomicFile::commit(const std::string& keep_old_as) {
   flush_buffer();
-  // A full disk or a lost network drive may show up only here. Pipes cannot be synchronized.
+  // A full disk or a lost network drive may be reported only here. Pipes cannot be synchronized.
   if (!temporary_.empty() && ::fsync(descriptor_) != 0) fail("cannot flush to the disk", errno);
   if (::close(std::exchange(descriptor_, -1)) != 0) {
     const int error = errno;

@@ -9,7 +9,7 @@
 namespace sphgeo {
 
 /// Writes all bytes to an open file descriptor. Throws IoError with the path and the system's
-/// words.
+/// message.
 void write_all(int descriptor, const void* data, std::size_t bytes, const std::string& path);
 
 /// Throws IoError: "path: <what>: <text of the error number>".
@@ -18,8 +18,8 @@ void write_all(int descriptor, const void* data, std::size_t bytes, const std::s
 
 /// A file written under a temporary name beside its final one. Only commit() makes it visible;
 /// without it the destructor removes the temporary file, so that no half-written file stays.
-/// Something that is no regular file (a pipe, /dev/stdout) is written to directly.
-/// Every failure is an IoError with the path, the bytes needed and the system's words.
+/// A path that is not a regular file (a pipe, /dev/stdout) is written to directly.
+/// Every failure is an IoError with the path, the bytes needed and the system's message.
 class AtomicFile {
  public:
   /// Opens `path` + ".part". `expected_bytes` (0 = unknown) is told when the disk is full.

@@ -1,5 +1,6 @@
 #pragma once
-// What a column of numbers means: used by probes, by run.csv and by every CSV file that is written.
+// Description of a column of numbers: used by probes, by run.csv and by every CSV file that is
+// written.
 
 #include <string>
 

@@ -32,7 +32,7 @@ class CsvTable {
   /// Whether there is such a column; "p" finds "p" and "p [Pa]".
   bool has(std::string_view name) const;
   /// The numbers of a column, NaN for empty cells. Throws TableError when there is no such column
-  /// (it lists those there are) or when a cell is no number (with its line).
+  /// (it lists those there are) or when a cell is not a number (with its line).
   std::vector<double> numbers(std::string_view name) const;
   /// The cells of a column as text. Throws TableError when there is no such column.
   const std::vector<std::string>& text(std::string_view name) const;

@@ -55,7 +55,7 @@ struct Colors {
 
 std::string heading(const Diagnostic& d, const Colors& c) {
   std::string at = d.place.file;
-  // An override is one line by nature: its number is its place.
+  // An override is a single line: its number is its place.
   if (d.place.line > 0 && at.rfind("--set", 0) != 0) {
     at += fmt::format(":{}:{}", d.place.line, std::max(1, d.place.column));
   }

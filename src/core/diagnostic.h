@@ -1,5 +1,5 @@
 #pragma once
-// What the program tells a user about a deck: where, which key, what is wrong, how to mend it.
+// Findings about a deck for the user: place, key, message and help.
 
 #include <string>
 #include <vector>
@@ -15,14 +15,14 @@ struct Place {
 
 enum class Severity { note, warning, error };
 
-/// One finding. The message stands alone (lower case, no full stop); help says how to mend it.
+/// One finding. The message stands alone (lower case, no full stop); help says how to correct it.
 struct Diagnostic {
   Severity severity = Severity::error;
   std::string id;  ///< short stable code such as "E012"
   Place place;
   std::string path;  ///< key path such as bodies[0].shape.radius
   std::string message;
-  std::string help;  ///< empty when there is nothing useful to say
+  std::string help;  ///< empty when there is no help
 };
 
 /// Collects findings so that all of them are reported at once.

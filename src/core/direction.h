@@ -7,9 +7,9 @@
 
 namespace sphgeo {
 
-/// The unit vector along `a`, also where the square of its length is no number in double precision;
-/// zero for zero. What is a unit vector but for rounding stays as it is, so that a direction is its
-/// own direction.
+/// The unit vector along `a`, also where the square of its length is not finite in double
+/// precision; zero for zero. A unit vector (up to round-off) is returned unchanged, so that the
+/// function is idempotent.
 inline Vec3 direction_of(const Vec3& a) {
   const double largest = a.cwiseAbs().maxCoeff();
   if (!(largest > 0)) return Vec3::Zero();

@@ -18,7 +18,7 @@ struct BoundaryMesh {
 /// The surfaces at a time (s) of all walls that have one.
 BoundaryMesh boundary_mesh(const Model& model, double time);
 
-/// Whether any wall moves, so that its surface is another at each time.
+/// Whether any wall moves, so that its surface depends on time.
 bool boundaries_move(const Model& model);
 
 }  // namespace sphgeo

@@ -24,15 +24,15 @@ using clock_type = std::chrono::steady_clock;
 constexpr double largest_set = (1 << 29) - 2;
 // Above this many particles a few steps would take longer than a calibration may.
 constexpr double calibrated_particles = 400'000;
-// More than any particle takes, bytes: whatever fits with it needs no closer look.
+// Upper bound of the memory of a particle, bytes: what fits with it needs no closer estimate.
 constexpr double generous_bytes = 10'000;
-// What a particle of water takes where none is there yet to learn from, bytes: as measured.
+// Memory of a particle of water where the scene has none to measure, bytes (measured).
 constexpr double entering_bytes_2d = 600, entering_bytes_3d = 1100;
 // Files of a run beside frames and rows: the resolved deck, the summary, the heads of the tables.
 constexpr double fixed_files = 16'000;
-// What HDF5 takes for itself when it builds a checkpoint: its code and caches, as measured.
+// Memory of HDF5 for building a checkpoint: its code and caches (measured).
 constexpr double checkpoint_library = 5.5e6;
-// What a checkpoint holds beside particles: the deck, counters, and HDF5's own tables.
+// Size of a checkpoint without particles: the deck, counters, and HDF5's own tables.
 constexpr double checkpoint_fixed = 265e3;
 // An entry of a collection of frames.
 constexpr double entry_bytes = 90;
@@ -57,7 +57,8 @@ double spacing_for(const Model& model, double wanted) {
   return spacing;
 }
 
-/// A coarse copy of the scene, planned and arranged, to learn from what a large one takes.
+/// A coarse copy of the scene, planned and arranged, from which the memory of a large one is
+/// estimated.
 template <int Dim>
 struct CoarseCopy {
   Model model;
@@ -81,9 +82,9 @@ struct CoarseCopy {
   }
 };
 
-/// Bytes that the process would take at its peak, from two coarse copies. What a particle takes
-/// depends on the spacing to first order only, by the share of particles near a surface: so it is a
-/// straight line through what it is in the two.
+/// Peak memory of the process in bytes, from two coarse copies. The memory of a particle depends on
+/// the spacing to first order, by the fraction of particles near a surface: it is extrapolated
+/// linearly from the two.
 template <int Dim>
 class MemoryRule {
  public:
@@ -189,7 +190,7 @@ void refuse_too_large(const Model& model) {
   const ParticleCounts counts = expected_particles(model);
   const auto available =
       static_cast<double>(available_memory()) + static_cast<double>(resident_memory());
-  // What no box bounds is found by the filling, which names the shape.
+  // An unbounded shape is reported by the filling, which names it.
   if (!std::isfinite(total_of(counts)) &&
       !std::isfinite(total_of(expected_particles(at_resolution(model, 1e3 * model.resolution)))))
     return;
@@ -198,7 +199,7 @@ void refuse_too_large(const Model& model) {
       entering > largest_set || 500 * entering > available) {
     Diagnostics found;
     found.error("E142", model.place_of("boundaries"), "boundaries",
-                fmt::format("inlets bring in about {:.3g} particles until the end; {:.3g} fit into "
+                fmt::format("inlets insert about {:.3g} particles until the end; {:.3g} fit into "
                             "the memory, and a set holds {:.3g}",
                             entering, available / 500, largest_set),
                 "a coarser resolution, a smaller inlet, a lower share, or an earlier end");
@@ -225,8 +226,8 @@ RunFigures ForecastBasis::figures(double coarser, const ParticleCounts& at, int 
                walls = ratio(count_of(at, "walls"), count_of(counts_, "walls"));
   RunFigures r;
   for (const auto& [set, n] : at) r.particles.emplace_back(set, whole(n));
-  // What inlets bring in takes memory at the end, and half of it time on the average: outlets are
-  // not known before.
+  // Inflow counts fully for the memory at the end, and half for the time on average: outflow is not
+  // known in advance.
   const double entering = entering_particles(at_resolution(model_, coarser * model_.resolution));
   r.entering = whole(entering);
   const double at_end = 1 + entering / std::max(1.0, fluid(at)), on_average = 0.5 * (1 + at_end);
@@ -272,7 +273,7 @@ Forecast ForecastBasis::operator()(const std::optional<MeasuredCosts>& costs) co
   const ParticleCounts expected = expected_particles(model_);
   for (const double coarser : ladder) {
     ParticleCounts at = expected_particles(at_resolution(model_, coarser * model_.resolution));
-    // What the estimate misses at the deck's own spacing it misses at the others.
+    // The error of the estimate at the deck's own spacing is the same at the others.
     for (auto& [set, n] : at) n *= ratio(count_of(counts_, set), count_of(expected, set));
     const int with_threads = sensible_threads(whole(fluid(at)), 0);
     LadderRung rung{coarser * model_.resolution, figures(coarser, at, with_threads, costs),

@@ -23,9 +23,9 @@ struct MeasuredCosts {
   double frame = 0;
 };
 
-/// What the forecast is made of, taken from a world as it is after a rearrangement. The world is
-/// left as it was. `base` is the memory of the process before it had any particles, bytes: program,
-/// libraries, deck.
+/// Input of the forecast, taken from a world after a rearrangement. The world is not changed.
+/// `base` is the memory of the process before it had any particles, bytes: program, libraries,
+/// deck.
 struct ForecastBasis {
   template <int Dim>
   ForecastBasis(World<Dim>& world, const Plan<Dim>& plan, const SoundSpeed& sound,
@@ -48,15 +48,15 @@ struct ForecastBasis {
 };
 
 /// Costs from a few real steps, probes and frames that are not kept: about a second, or as long as
-/// a run of `steps` advection steps. Moves the world on, or a coarser copy of it when a step would
-/// take too long. None when the scene does not survive them.
+/// a run of `steps` advection steps. Advances the world, or a coarser copy of it when a step would
+/// take too long. None when the scene becomes unstable in these steps.
 template <int Dim>
 std::optional<MeasuredCosts> measure_costs(World<Dim>& world, Plan<Dim>& plan,
                                            const std::vector<Wish>& wishes, double start,
                                            double steps);
 
 /// The forecast that a run makes: all but the time before its first step, the time from its own
-/// first steps. It watches, costs next to nothing and changes nothing.
+/// first steps. It measures at negligible cost and changes nothing.
 template <int Dim>
 class RunForecast {
  public:

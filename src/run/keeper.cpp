@@ -16,7 +16,7 @@ Keeper<Dim>::Keeper(RunParts<Dim> parts, const RunFolder& folder, double wall_be
 
 template <int Dim>
 void Keeper<Dim>::keep_if_due(double wall_seconds) {
-  // Fifty times what the last one took: checkpoints never cost more than 2 % of a run.
+  // Fifty times the duration of the last one: checkpoints never cost more than 2 % of a run.
   const double interval =
       std::max(parts_.world.model().output.checkpoint_every, 50 * last_seconds_);
   if (wall_seconds - written_at_ >= interval) keep(wall_seconds);
@@ -56,7 +56,7 @@ void require_same_deck(const Model& model, const CheckpointReader& checkpoint) {
   for (std::size_t k = 0; k < std::min<std::size_t>(keys.size(), 20); ++k) {
     const std::string path = keys[k].substr(0, keys[k].find(": "));
     found.error("E130", model.place_of(path), path,
-                "this key may not change when a run goes on: " + keys[k],
+                "this key may not change when a run is resumed: " + keys[k],
                 "set it back, or start anew in another folder");
   }
   throw DeckError(found);

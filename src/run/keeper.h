@@ -1,5 +1,5 @@
 #pragma once
-// Keeps checkpoints of a run while it goes on, and brings them back.
+// Writes checkpoints during a run, and restores them.
 
 #include <memory>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace sphgeo {
 
-/// The moving parts of a run that a checkpoint holds.
+/// The state of a run that a checkpoint holds.
 template <int Dim>
 struct RunParts {
   World<Dim>& world;
@@ -19,7 +19,7 @@ struct RunParts {
   Recorder<Dim>& recorder;
 };
 
-/// When to write checkpoints, and what they cost.
+/// When to write checkpoints, and their cost.
 template <int Dim>
 class Keeper {
  public:
@@ -28,7 +28,7 @@ class Keeper {
 
   /// Writes a checkpoint if one is due. `wall_seconds` since this process began.
   void keep_if_due(double wall_seconds);
-  /// Writes one now, after the guard has looked at all of the state. Throws UnstableError, IoError.
+  /// Writes one now, after the guard has checked the whole state. Throws UnstableError, IoError.
   void keep(double wall_seconds);
 
   double last_seconds() const { return last_seconds_; }

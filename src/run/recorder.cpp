@@ -20,7 +20,7 @@
 namespace sphgeo {
 namespace {
 
-// How far a CSV file had come at a checkpoint.
+// Length of a CSV file at a checkpoint.
 std::uint64_t bytes_at(const StateSource& source, const std::string& series) {
   return static_cast<std::uint64_t>(source.count(series + "/bytes"));
 }
@@ -31,15 +31,15 @@ std::vector<Column> run_columns(bool soil) {
       {"acoustic_steps", "1", "acoustic steps so far"},
       {"dt_advection", "s", "last advection step"},
       {"dt_acoustic", "s", "last acoustic step"},
-      {"particles", "1", "particles that are no walls"},
-      {"lost", "1", "particles that left the domain so far"},
+      {"particles", "1", "particles without those of walls"},
+      {"lost", "1", "particles that have left the domain since t = 0"},
       {"max_speed", "m/s", "largest speed"},
       {"min_density", "kg/m3", "smallest density of the water"},
       {"max_density", "kg/m3", "largest density of the water"},
-      {"mass", "kg", "mass of all that moves (per metre of depth in 2D)"},
-      {"momentum_x", "kg m/s", "momentum of all that moves"},
-      {"momentum_y", "kg m/s", "momentum of all that moves"},
-      {"momentum_z", "kg m/s", "momentum of all that moves"},
+      {"mass", "kg", "mass of all moving sets (per metre of depth in 2D)"},
+      {"momentum_x", "kg m/s", "momentum of all moving sets"},
+      {"momentum_y", "kg m/s", "momentum of all moving sets"},
+      {"momentum_z", "kg m/s", "momentum of all moving sets"},
       {"kinetic", "J", "kinetic energy"},
       {"potential", "J", "potential energy"},
       {"internal", "J", "energy of compression of water, elastic energy of soil and solids"},
@@ -111,7 +111,7 @@ void Recorder<Dim>::save(StateSink& sink) {
   const std::int64_t calls[] = {calls_probes_, calls_frames_};
   sink.put("output/seconds", seconds);
   sink.put("output/calls", calls);
-  // The ledger compares with the first row, which may be long ago.
+  // The ledger compares with the first row, which may be from an earlier process.
   for (const auto& [name, totals] : {std::pair{"first", &first_}, std::pair{"latest", &latest_}})
     if (*totals)
       sink.put(std::string("output/ledger/") + name, std::bit_cast<TotalsArray>(**totals));
@@ -172,7 +172,7 @@ void Recorder<Dim>::sample_probe(ProbeRun& p) {
   p.schedule.done(world_.clock.time);
 }
 
-// What every set that moves adds alike.
+// Contributions that all moving sets have in common.
 template <int Dim>
 void Recorder<Dim>::add_set_totals(const ParticleSet<Dim>& set, const Energies& e, Totals& sum) {
   const auto& m = set.scalar(fields::mass);

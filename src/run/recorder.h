@@ -1,5 +1,5 @@
 #pragma once
-// Everything a run writes while it goes on: probe series, frames, run.csv. It only looks.
+// Output during a run: probe series, frames, run.csv. It does not change the state.
 
 #include <array>
 #include <map>
@@ -37,19 +37,19 @@ class Schedule {
 template <int Dim>
 class Recorder {
  public:
-  /// Opens all files; with `resume` it goes on with those that are there, cut back to the
-  /// checkpoint. Throws IoError.
+  /// Opens all files; with `resume` it continues existing ones, cut back to the checkpoint. Throws
+  /// IoError.
   Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder,
            const StateSource* resume = nullptr);
 
-  /// Brings all rows to the disk, then saves how far each file has come.
+  /// Flushes all rows to the disk, then saves the length of each file.
   void save(StateSink& sink);
 
   /// At a safe point: samples whatever is due; `last` takes a row of everything.
   void observe(double wall_seconds, bool last);
-  /// Brings all rows to the disk. Throws IoError: the last rows are not lost in silence.
+  /// Flushes all rows to the disk. Throws IoError, so that lost rows are reported.
   void flush();
-  /// Writes a frame of the state at hand, whatever the schedule says (post-mortem).
+  /// Writes a frame of the present state, independent of the schedule (post-mortem).
   void write_frame();
 
   const Series* series(const std::string& probe) const;
@@ -74,7 +74,7 @@ class Recorder {
     double dissipated = 0, min_fraction = 0, max_fraction = 0;  ///< of soil
     double water_volume = 0,
            mixture_volume = 0;          ///< sum of m / rho and of V, where water meets soil
-    double mass_in = 0, energy_in = 0;  ///< what has come in through boundaries, less what has left
+    double mass_in = 0, energy_in = 0;  ///< inflow minus outflow through boundaries
     std::array<double, 3> momentum_in{};
   };
   using TotalsArray = std::array<double, sizeof(Totals) / sizeof(double)>;

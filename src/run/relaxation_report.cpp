@@ -11,13 +11,13 @@ std::vector<Column> columns() {
   return {
       {"density_spread", "",
        "standard deviation of the number density over its mean, of free particles deeper than "
-       "their kernel reaches"},
+       "their kernel support"},
       {"mass_error", "", "particles too many for the water in pores and clear; negative: too few"},
       {"density_mean", "", "mean of the same number densities; 1 is the target"},
       {"density_low", "", "smallest of them"},
       {"density_high", "", "largest of them"},
-      {"mean_move", "", "mean movement of the step over the target spacing"},
-      {"largest_move", "", "largest movement of the step over the target spacing"}};
+      {"mean_move", "", "mean displacement of the step over the target spacing"},
+      {"largest_move", "", "largest displacement of the step over the target spacing"}};
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// What is told about a relaxation of water in soil: its history, one line, and the claims about it.
+// Report of a relaxation of water in soil: its history, one line, and the claims about it.
 
 #include <string>
 #include <vector>

@@ -23,7 +23,7 @@ double count_of_every(double interval, double duration, double steps) {
   return std::min(std::floor(duration / interval + 1e-9) + 1, steps + 1);
 }
 
-/// Size of a frame of one set, and what is held in memory while it is written.
+/// Size of a frame of one set, and the memory while it is written.
 template <int Dim>
 std::pair<double, double> frame_size(const World<Dim>& world, const ParticleSet<Dim>& set,
                                      const std::vector<Wish>& wishes) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a run will write, and what writing it takes.
+// Forecast of a run's output, and its cost.
 
 #include <string>
 #include <vector>
@@ -8,14 +8,14 @@
 
 namespace sphgeo {
 
-/// How often a run looks at its particles, and what it writes then.
+/// Number of samples of a run, and the size of its output.
 struct RunOutput {
   double frames = 0;            ///< number of
   double observations = 0;      ///< number of times that any probe, row or frame is due
   double samples_bytes = 0;     ///< of all rows of the probes and of run.csv, in the files
   double series_bytes = 0;      ///< the same in memory
   double frame_bytes = 0;       ///< of one frame of all sets but walls
-  double frame_heads = 0;       ///< of that, what does not depend on the number of particles
+  double frame_heads = 0;       ///< of that, the part independent of the number of particles
   double walls_bytes = 0;       ///< of all frames of the boundaries
   double buffer_bytes = 0;      ///< memory taken while a frame is written
   double checkpoint_bytes = 0;  ///< of one checkpoint; while it is written it exists in memory too
@@ -38,7 +38,7 @@ double saved_bytes(const ParticleSet<Dim>& set) {
 /// Bytes of a frame of the boundaries; 0 without any.
 double boundaries_bytes(const Model& model);
 
-/// Samples all probes once for nothing but the time it takes.
+/// Samples all probes once to measure the time.
 template <int Dim>
 void sample_probes(const World<Dim>& world);
 

@@ -1,5 +1,5 @@
 #pragma once
-// How many threads a scene can use.
+// Number of threads that a scene can use.
 
 namespace sphgeo {
 

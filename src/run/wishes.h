@@ -1,5 +1,5 @@
 #pragma once
-// What a run asks the planner for.
+// Fields that a run requests from the planner.
 
 #include <string>
 #include <vector>
@@ -12,7 +12,7 @@ namespace sphgeo {
 /// Fields that a frame of a set shows when the deck names none; `mixed`: water and soil meet.
 std::vector<std::string> usual_fields(const std::string& set, bool mixed);
 
-/// Fields that the deck's probes and frames ask for, by who asks.
+/// Fields requested by the deck's probes and frames, with who requests them.
 std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& sets);
 
 }  // namespace sphgeo

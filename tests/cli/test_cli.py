@@ -88,13 +88,13 @@ boundaries: [{name: ground, type: wall, shape: {type: box, min: [-1, -1, -0.5], 
         self.assertAlmostEqual(volume, 4 / 3 * math.pi * 0.125, delta=0.01)
         # A deck takes it back.
         taken = self.write("taken.yaml", (self.here / "solid.yaml").read_text().replace("{type: sphere, center: [0, 0, 1], radius: 0.5}", "{type: stl, file: ball.stl}"))
-        self.assertIn("the deck is sound", self.accepted("check", taken, "--no-calibrate").stdout)
+        self.assertIn("the deck is correct", self.accepted("check", taken, "--no-calibrate").stdout)
         self.accepted("export", deck, "ground", "-o", "ground.stl", "--spacing", "0.2")
         self.refused(2, "ground.stl exists; --overwrite replaces it", "export", deck, "ground", "-o", "ground.stl")
         self.accepted("export", deck, "ground", "-o", "ground.stl", "--overwrite")
         self.refused(2, ["no body and no wall of the deck is named 'bal'", "did you mean 'ball'?"], "export", deck, "bal", "-o", "x.stl")
-        self.refused(2, "STL is for scenes in 3D", "export", deck, "ball", "-o", "x.stl", "--set", "dimension=2")
-        self.refused(2, "is no length above zero", "export", deck, "ball", "-o", "x.stl", "--spacing=-1")
+        self.refused(2, "STL needs a scene in 3D", "export", deck, "ball", "-o", "x.stl", "--set", "dimension=2")
+        self.refused(2, "is not a length above zero", "export", deck, "ball", "-o", "x.stl", "--spacing=-1")
         self.assertFalse((self.here / "x.stl").exists())
 
     def test_decks_that_cannot_be_read(self):

@@ -58,7 +58,7 @@ class Forecast(unittest.TestCase):
         self.assertEqual([r["entering"] > s["entering"] for r, s in zip(with_rain["ladder"][1:], with_rain["ladder"])], [True] * 3)
         dry = json.loads(call("check", rain, "--json", "--no-calibrate", *words, "--set", "boundaries[1].share=0.001").stdout)["forecast"]
         self.assertGreater(with_rain["memory_bytes"], dry["memory_bytes"] + 400 * with_rain["entering"])
-        self.assertIn("inlets bring in about", call("check", rain, "--no-calibrate").stdout)
+        self.assertIn("inlets insert about", call("check", rain, "--no-calibrate").stdout)
 
     def test_ladder(self):
         """The rungs are what the deck itself says at those spacings."""
