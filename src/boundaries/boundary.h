@@ -67,8 +67,7 @@ template <class B>
 void declare_wall_keys(Schema<B>& s) {
   s.optional("slip", &B::slip, unit::none, "no_slip or free_slip condition for the water")
       .choices({"no_slip", "free_slip"});
-  s.optional("motion", &B::motion, unit::none,
-             "prescribed motion; a boundary without one is at rest");
+  s.optional("motion", &B::motion, unit::none, "prescribed motion; without one it is at rest");
 }
 
 }  // namespace sphgeo

@@ -14,8 +14,7 @@ namespace sphgeo {
 
 /// An open boundary, crossed by water or soil.
 struct ExchangeBoundary : BoundarySpec {
-  /// The box in which particles are inserted, m; empty for a boundary through which they only
-  /// leave.
+  /// The box in which particles are inserted, m; empty for a boundary that only removes them.
   virtual Aabb source_box() const { return {}; }
   /// Approximate number of particles that enter between two times, s; empty when it is unknown.
   virtual std::optional<double> expected_particles(double spacing, int dimension, double from,
@@ -55,7 +54,7 @@ struct Reservoir final : ExchangeBoundary {
   double level = 0;  ///< z of the surface, m
 
   /// The positions just below the level at which water may be inserted.
-  std::vector<Vec3> places(double spacing, int dimension) const;
+  std::vector<Vec3> positions(double spacing, int dimension) const;
   Aabb source_box() const override;
   std::optional<double> expected_particles(double, int, double, double) const override {
     return {};

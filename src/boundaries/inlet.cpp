@@ -61,7 +61,7 @@ std::vector<Vec3> Inlet::layer(double spacing, int dimension) const {
     n[k] = k == across || (dimension == 2 && k == 1)
                ? 1
                : std::max<Index>(1, std::llround((max[k] - min[k]) / spacing));
-  std::vector<Vec3> places;
+  std::vector<Vec3> positions;
   for (Index z = 0; z < n[2]; ++z)
     for (Index y = 0; y < n[1]; ++y)
       for (Index x = 0; x < n[0]; ++x) {
@@ -73,9 +73,9 @@ std::vector<Vec3> Inlet::layer(double spacing, int dimension) const {
                        ? 0
                        : min[k] + (static_cast<double>(at[k]) + 0.5) * (max[k] - min[k]) /
                                       static_cast<double>(n[k]);
-        places.push_back(p);
+        positions.push_back(p);
       }
-  return places;
+  return positions;
 }
 
 Aabb Inlet::source_box() const {

@@ -23,9 +23,9 @@ Schema<Reservoir> Reservoir::schema() {
   return s;
 }
 
-std::vector<Vec3> Reservoir::places(double spacing, int dimension) const {
+std::vector<Vec3> Reservoir::positions(double spacing, int dimension) const {
   const Aabb box = shape->box();
-  std::vector<Vec3> places;
+  std::vector<Vec3> positions;
   // At least a spacing apart: each particle gets its full mass.
   const auto count = [&](int k) {
     return std::max<Index>(
@@ -41,9 +41,9 @@ std::vector<Vec3> Reservoir::places(double spacing, int dimension) const {
                        : box.lo.y() + (static_cast<double>(y) + 0.5) * (box.hi.y() - box.lo.y()) /
                                           static_cast<double>(ny),
                    level - 0.5 * spacing);
-      if (shape->signed_distance(p) < 0) places.push_back(p);
+      if (shape->signed_distance(p) < 0) positions.push_back(p);
     }
-  return places;
+  return positions;
 }
 
 Aabb Reservoir::source_box() const { return shape->box(); }

@@ -39,11 +39,11 @@ constexpr double reach = 4;
 /// The positions of all probes that have one.
 template <int Dim>
 std::vector<Vec3> probe_places(const Model& model) {
-  std::vector<Vec3> places;
+  std::vector<Vec3> positions;
   for (const auto& spec : model.probes)
-    for (const Vec3& at : dynamic_cast<const Probe&>(*spec).places())
-      if (at.allFinite()) places.push_back(to_space<Dim>(to_scene<Dim>(at)));
-  return places;
+    for (const Vec3& at : dynamic_cast<const Probe&>(*spec).positions())
+      if (at.allFinite()) positions.push_back(to_space<Dim>(to_scene<Dim>(at)));
+  return positions;
 }
 
 }  // namespace
@@ -52,10 +52,10 @@ template <int Dim>
 std::string write_preview(const World<Dim>& world, const std::string& path) {
   const Model& model = world.model();
   Aabb particles, surroundings;
-  std::map<std::string, std::vector<Vec3>> places;
+  std::map<std::string, std::vector<Vec3>> positions;
   for (const auto& set : world.sets()) {
     if (set->phase() == "wall") continue;
-    std::vector<Vec3>& at = places[set->name()];
+    std::vector<Vec3>& at = positions[set->name()];
     const auto& x = set->vector(fields::position);
     for (Index i = 0; i < set->size(); ++i) at.push_back(to_space<Dim>(x[i]));
     for (const Vec3& p : at) particles.extend(p);
@@ -87,7 +87,7 @@ std::string write_preview(const World<Dim>& world, const std::string& path) {
   for (const std::string_view kind :
        {"water", "soil", "solid"})  // soil above the water in its pores
     for (const auto& set : world.sets()) {
-      const std::vector<Vec3>& at = places[set->name()];
+      const std::vector<Vec3>& at = positions[set->name()];
       if (set->phase() != kind || at.empty()) continue;
       const int color = kind == "water"  ? color_number::water
                         : kind == "soil" ? color_number::soil

@@ -86,11 +86,11 @@ Json probes_json(const RunData& run, std::size_t rows) {
 Json sets_json(const RunData& run, std::size_t particles) {
   Json out = Json::array();
   for (const SetState& set : run.sets) {
-    const auto which = random_choice(set.places.size(), particles);
+    const auto which = random_choice(set.positions.size(), particles);
     Json row = {{"name", set.set}, {"particles", set.particles}};
     for (int axis = 0; axis < 3; ++axis) {
       std::vector<double> x;
-      for (const std::size_t k : which) x.push_back(set.places[k][axis]);
+      for (const std::size_t k : which) x.push_back(set.positions[k][axis]);
       row[std::string(1, "xyz"[axis])] = list(x);
     }
     row["fields"] = Json::object();
@@ -146,8 +146,8 @@ RunData from_json(const Json& j) {
     if (x.size() != y.size() || x.size() != z.size())
       throw std::runtime_error("the positions of a set differ in length");
     for (std::size_t k = 0; k < x.size(); ++k) {
-      set.places.emplace_back(x[k], y[k], z[k]);
-      if (!set.places.back().allFinite())
+      set.positions.emplace_back(x[k], y[k], z[k]);
+      if (!set.positions.back().allFinite())
         throw std::runtime_error("the position of a particle is not a number");
     }
     for (const auto& [name, values] : row.at("fields").items()) {

@@ -17,7 +17,7 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 /// Positions of a set that are compared with the other run: enough for a mean, few enough for sets
 /// of millions.
-constexpr std::size_t most_places = 2000;
+constexpr std::size_t most_positions = 2000;
 
 struct Span {
   double least = infinite, most = -infinite;
@@ -155,25 +155,26 @@ class Comparison {
           const double change = static_cast<double>(std::abs(r.particles - b.particles));
           add("particles", b.set, share(change, static_cast<double>(b.particles)),
               fmt::format("{}, were {}", r.particles, b.particles));
-          if (b.places.empty()) return;
-          if (r.places.empty()) return missing("particles of", b.set);
+          if (b.positions.empty()) return;
+          if (r.positions.empty()) return missing("particles of", b.set);
           compare_fields(r, b);
         });
   }
 
   void compare_fields(const SetState& r, const SetState& b) {
     std::vector<std::size_t> sample;
-    for (std::size_t k = 0; k < b.places.size(); ++k)
-      if (b.places.size() <= most_places || random_bits(2, k) % b.places.size() < most_places)
+    for (std::size_t k = 0; k < b.positions.size(); ++k)
+      if (b.positions.size() <= most_positions ||
+          random_bits(2, k) % b.positions.size() < most_positions)
         sample.push_back(k);
-    std::vector<Vec3> places;
-    for (const std::size_t k : sample) places.push_back(b.places[k]);
-    const std::vector<std::size_t> nearest = nearest_places(places, r.places);
+    std::vector<Vec3> positions;
+    for (const std::size_t k : sample) positions.push_back(b.positions[k]);
+    const std::vector<std::size_t> nearest = nearest_positions(positions, r.positions);
     double sum = 0;
-    for (std::size_t k = 0; k < places.size(); ++k)
-      sum += (places[k] - r.places[nearest[k]]).norm();
-    const double mean = sum / static_cast<double>(places.size());
-    add("places", b.set, base_.resolution > 0 ? mean / base_.resolution : mean,
+    for (std::size_t k = 0; k < positions.size(); ++k)
+      sum += (positions[k] - r.positions[nearest[k]]).norm();
+    const double mean = sum / static_cast<double>(positions.size());
+    add("positions", b.set, base_.resolution > 0 ? mean / base_.resolution : mean,
         fmt::format("mean {:.3g} m", mean));
     match(
         "field", r.fields, b.fields, [&](const FieldState& f) { return b.set + "." + f.name; },
@@ -283,14 +284,14 @@ CurveDistance curve_distance(const ProbeCurve& run, const ProbeCurve& baseline) 
   return {m.rms(range.largest()), range.size(), m.unlike / n};
 }
 
-std::vector<std::size_t> nearest_places(const std::vector<Vec3>& places,
-                                        const std::vector<Vec3>& among) {
-  std::vector<std::size_t> nearest(places.size(), 0);
-  parallel_for(static_cast<Index>(places.size()), [&](Index p) {
+std::vector<std::size_t> nearest_positions(const std::vector<Vec3>& positions,
+                                           const std::vector<Vec3>& among) {
+  std::vector<std::size_t> nearest(positions.size(), 0);
+  parallel_for(static_cast<Index>(positions.size()), [&](Index p) {
     const auto k = static_cast<std::size_t>(p);
     double least = infinite;
     for (std::size_t j = 0; j < among.size(); ++j) {
-      const double d = (places[k] - among[j]).squaredNorm();
+      const double d = (positions[k] - among[j]).squaredNorm();
       if (d < least) {
         least = d;
         nearest[k] = j;

@@ -13,7 +13,7 @@ namespace sphgeo {
 /// One thing that was compared.
 struct RunDifference {
   std::string
-      kind;  ///< status, particles, steps, probe, places, field, ledger, result, missing, new
+      kind;  ///< status, particles, steps, probe, positions, field, ledger, result, missing, new
   std::string name;  ///< "gauge.level"
   double difference =
       0;  ///< as the tolerance of its kind means it; infinite when it cannot be compared
@@ -40,8 +40,8 @@ struct CurveDistance {
 CurveDistance curve_distance(const ProbeCurve& run, const ProbeCurve& baseline);
 
 /// For each position the index of the nearest of `among` (not empty).
-std::vector<std::size_t> nearest_places(const std::vector<Vec3>& places,
-                                        const std::vector<Vec3>& among);
+std::vector<std::size_t> nearest_positions(const std::vector<Vec3>& positions,
+                                           const std::vector<Vec3>& among);
 
 /// As a table, the worst first: all that fail and, of the others, the `shown` nearest to failing.
 std::string render_differences(const std::vector<RunDifference>& differences, std::size_t shown);

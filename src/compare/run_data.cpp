@@ -32,7 +32,7 @@ SetState last_frame(const std::string& set_name, const VtuFrame& frame) {
   SetState set;
   set.set = set_name;
   set.particles = static_cast<Index>(frame.points.size());
-  set.places = frame.points;
+  set.positions = frame.points;
   for (const VtuColumn& field : frame.point_fields) {
     if (field.name == "id") continue;
     const auto n = static_cast<std::size_t>(field.components);

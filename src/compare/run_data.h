@@ -26,8 +26,8 @@ struct FieldState {
 /// A set of particles at the end of a run.
 struct SetState {
   std::string set;
-  Index particles = 0;       ///< of the whole set; positions may be a sample of it
-  std::vector<Vec3> places;  ///< m
+  Index particles = 0;          ///< of the whole set; positions may be a sample of it
+  std::vector<Vec3> positions;  ///< m
   std::vector<FieldState> fields;
 };
 

@@ -23,7 +23,7 @@ Schema<Tolerances> Tolerances::schema() {
   s.optional("fields", &Tolerances::fields, unit::none,
              "root mean square of a field's difference at nearest particles, by its range")
       .at_least(0);
-  s.optional("places", &Tolerances::places, unit::none,
+  s.optional("positions", &Tolerances::positions, unit::none,
              "mean distance to the nearest particle, in spacings")
       .at_least(0);
   s.optional("ledger", &Tolerances::ledger, unit::none,
@@ -45,7 +45,7 @@ Schema<Tolerances> Tolerances::schema() {
 double Tolerances::of(const std::string& kind, const std::string& name) const {
   double tolerance = kind == "probe"       ? probes
                      : kind == "field"     ? fields
-                     : kind == "places"    ? places
+                     : kind == "positions" ? positions
                      : kind == "ledger"    ? ledger
                      : kind == "result"    ? results
                      : kind == "steps"     ? steps

@@ -19,7 +19,7 @@ struct ToleranceRule {
 struct Tolerances {
   double probes = 0.02;
   double fields = 0.05;
-  double places = 0.5;  ///< mean distance to the nearest particle, in spacings
+  double positions = 0.5;  ///< mean distance to the nearest particle, in spacings
   double ledger = 0.01;
   double results = 0.02;
   double steps = 0.05;

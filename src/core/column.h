@@ -1,6 +1,5 @@
 #pragma once
-// Description of a column of numbers: used by probes, by run.csv and by every CSV file that is
-// written.
+// Description of a column of numbers: of probes, of run.csv and of every CSV file that is written.
 
 #include <string>
 

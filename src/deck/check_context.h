@@ -1,6 +1,5 @@
 #pragma once
-// What a rule across keys knows and reports: the scene's dimension, and findings tied to deck
-// lines.
+// What a rule across keys knows and reports: the scene's dimension, and findings at deck lines.
 
 #include <string>
 

@@ -97,8 +97,7 @@ inline constexpr const char* relaxation_probe = "relaxation";
 struct Relaxation {
   int steps = 100;
   Index seed = 1;
-  double tolerance =
-      0;  ///< mean displacement of a step, over the target spacing, that ends it early
+  double tolerance = 0;  ///< mean displacement of a step over the target spacing that ends it
   std::string acceptance = "stratified";  ///< stratified | independent draws of the candidates
   std::optional<FilePath> file;           ///< a stored result
   static Schema<Relaxation> schema();

@@ -28,8 +28,7 @@ struct Waves {
   /// Amplitude of the motion with half the period that suppresses the free second-order wave
   /// (Madsen 1971): H^2 / (32 d) (3 cosh kd / sinh^3 kd - 2 S / H), m. 0 for order 1.
   double second_amplitude() const;
-  /// Displacement of the piston at a time since its start, m; without that of active wave
-  /// absorption.
+  /// Displacement of the piston at a time since its start, m; without active wave absorption.
   Vec3 displacement(double t) const;
 
   /// Surface elevation of the generated waves at a distance from the piston's rest position: the
@@ -39,8 +38,9 @@ struct Waves {
   /// at a distance over the piston's displacement, in phase with it (Biesel; Dean and Dalrymple
   /// 1991, section 6.3).
   double evanescent(double distance) const;
-  /// Speed of an absorbing piston over the elevation of the wave at it, 1/s: omega S / H, the wave
-  /// maker theory inverted; sqrt(g / d) in shallow water (Schaeffer and Klopman 2000).
+  /// Speed of an absorbing piston over the elevation of the wave at it, 1/s: omega S / H, the
+  /// inverse of the wave maker theory; sqrt(g / d) in shallow water (Schaeffer and Klopman
+  /// 2000).
   double absorbing_rate() const;
 
  private:

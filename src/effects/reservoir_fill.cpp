@@ -34,7 +34,7 @@ class ReservoirFill final : public Effect<Dim> {
     water_ = &world.set("water");
     prepare_entry(world, *water_, reservoir_.name);
     places_.clear();
-    for (const Vec3& p : reservoir_.places(water_->spacing(), Dim))
+    for (const Vec3& p : reservoir_.positions(water_->spacing(), Dim))
       places_.push_back(to_scene<Dim>(p));
   }
 

@@ -52,11 +52,11 @@ class Contour {
                   : static_cast<Index>(std::ceil((box.hi[k] - box.lo[k]) / spacing)) + 3;
     value_.resize(at(n_[0] * n_[1] * n_[2]));
     parallel_for(static_cast<Index>(value_.size()), [&](Index i) {
-      const double d = shape_.bound(place(i));
+      const double d = shape_.bound(position(i));
       // A node exactly on the surface would make triangles without area; one on a seam is inside.
       const double least = 1e-6 * spacing_;
       const bool solid =
-          d < 0.0 || (d < least && on_inner_seam(shape_, place(i), 1e-3 * spacing_, n_[1] == 1));
+          d < 0.0 || (d < least && on_inner_seam(shape_, position(i), 1e-3 * spacing_, n_[1] == 1));
       value_[at(i)] = std::abs(d) < least ? (solid ? -least : least) : d;
     });
   }
@@ -101,7 +101,7 @@ class Contour {
         }
         if (leaves == 1) add_segment(leave[0], enter[0]);
         if (leaves == 2) {
-          const Vec3 middle = 0.5 * (place(c[0]) + place(c[2]));
+          const Vec3 middle = 0.5 * (position(c[0]) + position(c[2]));
           const bool solid_middle = shape_.bound(middle) < 0.0;
           // Connected solid: cut off the empty corner, whose entering edge follows the leaving one.
           const bool follows = (first_enter == first_leave + 1) == solid_middle;
@@ -114,7 +114,7 @@ class Contour {
   SurfaceMesh take() { return std::move(mesh_); }
 
  private:
-  Vec3 place(Index i) const {
+  Vec3 position(Index i) const {
     return origin_ + spacing_ * Vec3(static_cast<double>(i % n_[0]),
                                      static_cast<double>(i / n_[0] % n_[1]),
                                      static_cast<double>(i / (n_[0] * n_[1])));
@@ -128,7 +128,7 @@ class Contour {
                           static_cast<std::int32_t>(mesh_.points.size()));
     if (fresh) {
       // Regula falsi with halving: linear between the nodes is off where the surface is curved.
-      Vec3 p = place(a), q = place(b);
+      Vec3 p = position(a), q = position(b);
       double vp = value_[at(a)], vq = value_[at(b)];
       Vec3 m = p;
       for (int k = 0; k < 8; ++k) {
@@ -158,8 +158,8 @@ class Contour {
     for (const Index c : corner) (inside(c) ? in[at(ins++)] : out[at(outs++)]) = c;
     if (ins == 0 || outs == 0) return;
     Vec3 outward = Vec3::Zero();
-    for (int k = 0; k < outs; ++k) outward += place(out[at(k)]) / outs;
-    for (int k = 0; k < ins; ++k) outward -= place(in[at(k)]) / ins;
+    for (int k = 0; k < outs; ++k) outward += position(out[at(k)]) / outs;
+    for (int k = 0; k < ins; ++k) outward -= position(in[at(k)]) / ins;
     if (ins == 2) {
       const std::int32_t a = crossing(in[0], out[0]), b = crossing(in[0], out[1]),
                          c = crossing(in[1], out[1]), d = crossing(in[1], out[0]);

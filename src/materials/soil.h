@@ -21,10 +21,10 @@ struct Soil final : MaterialSpec {
   double cohesion = 0;                        ///< c, Pa
   std::optional<double> saturated_cohesion;   ///< c of Eq. 108 at full saturation, Pa
   double dilation_angle = 0;                  ///< psi, rad
-  std::string cone = "plane_strain";  ///< plane_strain | compression | extension: where it matches
-                                      ///< Mohr and Coulomb
-  std::string drag = "auto";          ///< auto | ergun | darcy | none, of water in the soil
-  std::optional<double> grain_size;   ///< D_c of Eq. 31, m
+  std::string cone =
+      "plane_strain";  ///< plane_strain | compression | extension: where it meets Mohr and Coulomb
+  std::string drag = "auto";         ///< auto | ergun | darcy | none, of water in the soil
+  std::optional<double> grain_size;  ///< D_c of Eq. 31, m
   std::optional<double> hydraulic_conductivity;  ///< K^s of Eq. 29, m/s
   double drag_viscous = 150;                     ///< alpha_d of Eq. 31
   double drag_inertial = 1.75;                   ///< beta_d of Eq. 31

@@ -11,12 +11,11 @@ namespace sphgeo {
 
 /// What elastic and rigid solids share.
 struct SolidMaterial : MaterialSpec {
-  double density = 0;  ///< rho_0, kg/m3
-  std::string slip =
-      "no_slip";        ///< no_slip | free_slip: condition for water and soil on its surface
+  double density = 0;            ///< rho_0, kg/m3
+  std::string slip = "no_slip";  ///< no_slip | free_slip: water and soil on its surface
   double friction = 0;  ///< Coulomb coefficient of contacts; between two solids the smaller one
-  double contact_damping = 0;  ///< damping of approach in a contact, as a fraction of rho_0 c_0;
-                               ///< between two solids the mean
+  double contact_damping =
+      0;  ///< of approach in a contact, over rho_0 c_0; between two solids the mean of both
 
   std::string phase() const final { return "solid"; }
   virtual bool rigid() const = 0;
@@ -80,7 +79,8 @@ inline const SolidMaterial* solid_of(const Model& model, const Body& body) {
 }
 bool has_solids(const Model& model);
 
-/// The spacings of solids, each once, in order of the bodies, m: each has its own particle set.
+/// The spacings of solids, each once, in order of the bodies, m: the solids of each spacing have
+/// their own particle set.
 std::vector<double> solid_spacings(const Model& model);
 
 /// The set of the solids of that spacing: "solids", "solids_2" ...

@@ -60,8 +60,7 @@ class FolderLock {
 /// Whether a folder holds files that a run has written.
 bool holds_results(const std::string& path);
 
-/// A name of the deck as a file name: characters other than letters, digits, '.', '_' and '-'
-/// become %XX.
+/// A name of the deck as a file name: characters but letters, digits, '.', '_', '-' become %XX.
 std::string file_name_of(const std::string& name);
 
 }  // namespace sphgeo

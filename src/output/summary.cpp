@@ -33,8 +33,9 @@ Json guard_json(const GuardReport& guard) {
     out["effect"] = guard.effect;
     out["set"] = guard.set;
     out["particle"] = guard.particle ? Json(*guard.particle) : Json(nullptr);
-    if (guard.place) out["place"] = numbers({guard.place->x(), guard.place->y(), guard.place->z()});
-    else out["place"] = nullptr;
+    if (guard.place)
+      out["position"] = numbers({guard.place->x(), guard.place->y(), guard.place->z()});
+    else out["position"] = nullptr;
     out["time_s"] = number(guard.time);
   }
   for (const auto& [name, value] : guard.extremes) out[name] = number(value);

@@ -57,7 +57,8 @@ struct VtuOptions {
 void write_vtu(const std::string& path, const VtuPoints& points,
                const std::vector<VtuField>& fields, const VtuOptions& options = {});
 
-/// Bytes of the file that write_vtu would write. Real numbers of fields are not read, only counted.
+/// Bytes of the file that write_vtu would write. Real numbers of fields are not read; they
+/// are only counted.
 std::uint64_t vtu_bytes(const VtuPoints& points, const std::vector<VtuField>& fields,
                         const VtuOptions& options = {});
 

@@ -35,7 +35,7 @@ struct MaterialPointProbe final : Probe {
   void inspect(const Model& model, CheckContext& c) const override {
     inspect_body(model, body, "body", c);
   }
-  std::vector<Vec3> places() const override { return {at}; }
+  std::vector<Vec3> positions() const override { return {at}; }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     const std::string set = set_of_body(scene.model(), body);

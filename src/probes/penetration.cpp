@@ -69,7 +69,7 @@ struct PenetrationProbe final : Probe {
   struct Patch {
     std::vector<Vec3> at;
     Index nearest = -1;
-    Vec3 place = Vec3::Zero(), normal = Vec3::Zero();
+    Vec3 position = Vec3::Zero(), normal = Vec3::Zero();
   };
 
   template <class Select>
@@ -87,9 +87,9 @@ struct PenetrationProbe final : Probe {
       }
     });
     if (p.nearest < 0) return p;
-    p.place = x(p.nearest);
-    scene.near(set, p.place, [&](Index k, double w) {
-      if (select(k)) p.normal -= w * (x(k) - p.place);
+    p.position = x(p.nearest);
+    scene.near(set, p.position, [&](Index k, double w) {
+      if (select(k)) p.normal -= w * (x(k) - p.position);
     });
     p.normal.normalize();
     return p;
@@ -100,7 +100,7 @@ struct PenetrationProbe final : Probe {
   /// these. Only particles near one line along a direction are considered.
   static double gap(const Patch& a, const Patch& b, const Vec3& point, double spacing,
                     int dimension) {
-    const Vec3 middle = 0.5 * (point + b.place);
+    const Vec3 middle = 0.5 * (point + b.position);
     const double aside = 0.55 * spacing * std::sqrt(dimension - 1.0);
     double best = -std::numeric_limits<double>::infinity();
     for (const Vec3& n : {b.normal, Vec3(-a.normal), Vec3((b.normal - a.normal).normalized())}) {
@@ -109,7 +109,7 @@ struct PenetrationProbe final : Probe {
       const auto beside = [&](const Vec3& p) {
         return (p - middle - along(p) * n).norm() <= aside;
       };
-      double low = along(point), high = along(b.place);
+      double low = along(point), high = along(b.position);
       for (const Vec3& p : a.at)
         if (beside(p)) low = std::min(low, along(p));
       for (const Vec3& p : b.at)

@@ -22,7 +22,7 @@ struct PressureProbe final : Probe {
   std::vector<FieldRequest> needs(const Model&) const override {
     return {{"water", &fields::pressure}, {"water", &fields::volume}};
   }
-  std::vector<Vec3> places() const override { return {at}; }
+  std::vector<Vec3> positions() const override { return {at}; }
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     const PointFit fit(scene, "water", at);
     out[1] = fit.support();

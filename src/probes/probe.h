@@ -27,7 +27,7 @@ struct Probe : ProbeSpec {
   /// Reports errors of the probe in this deck, such as an unknown name.
   virtual void inspect(const Model&, CheckContext&) const {}
   /// Points that should lie inside the scene, for `check`.
-  virtual std::vector<Vec3> places() const { return {}; }
+  virtual std::vector<Vec3> positions() const { return {}; }
 };
 
 /// Columns of a vector: x, y, z in 3D; x, z in 2D.

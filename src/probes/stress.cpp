@@ -38,7 +38,7 @@ struct StressProbe final : Probe {
             {"soil", &fields::plastic_strain},
             {"soil", &fields::volume_fraction}};
   }
-  std::vector<Vec3> places() const override { return {at}; }
+  std::vector<Vec3> positions() const override { return {at}; }
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     const PointFit fit(scene, "soil", at);
     out[10] = fit.support();

@@ -15,27 +15,27 @@ namespace sphgeo {
 /// none.
 inline std::vector<std::optional<double>> surface_heights(const SceneView& scene,
                                                           const std::string& set,
-                                                          const std::vector<Vec3>& places) {
-  std::vector<std::optional<double>> heights(places.size());
+                                                          const std::vector<Vec3>& positions) {
+  std::vector<std::optional<double>> heights(positions.size());
   if (!scene.has_set(set) || scene.size(set) == 0) return heights;
   const double dp = scene.spacing(set);
   const auto x = scene.vector(set, fields::position);
   const auto volume = scene.scalar(set, fields::volume);
   const double reach = 2 * scene.smoothing_length(set);
-  std::vector<double> top(places.size(), -INFINITY), bottom(places.size(), INFINITY);
+  std::vector<double> top(positions.size(), -INFINITY), bottom(positions.size(), INFINITY);
   for (Index i = 0; i < scene.size(set); ++i) {
     const Vec3 p = x(i);
-    for (std::size_t k = 0; k < places.size(); ++k) {
-      if (std::abs(p.x() - places[k].x()) > reach || std::abs(p.y() - places[k].y()) > reach)
+    for (std::size_t k = 0; k < positions.size(); ++k) {
+      if (std::abs(p.x() - positions[k].x()) > reach || std::abs(p.y() - positions[k].y()) > reach)
         continue;
       top[k] = std::max(top[k], p.z());
       bottom[k] = std::min(bottom[k], p.z());
     }
   }
-  for (std::size_t k = 0; k < places.size(); ++k) {
+  for (std::size_t k = 0; k < positions.size(); ++k) {
     const auto filled = [&](double z) {
       double sum = 0;
-      scene.near(set, {places[k].x(), places[k].y(), z},
+      scene.near(set, {positions[k].x(), positions[k].y(), z},
                  [&](Index i, double w) { sum += volume(i) * w; });
       return sum;
     };

@@ -33,7 +33,7 @@ struct SurfaceProfileProbe final : Probe {
   std::vector<Column> columns(const Model&) const override {
     std::vector<Column> columns;
     for (int k = 0; k < points; ++k) {
-      const Vec3 at = place(k);
+      const Vec3 at = point(k);
       columns.push_back(
           {fmt::format("height_{}", k), "m",
            fmt::format("z of the surface at x = {:.6g} m, y = {:.6g} m; empty where there is none",
@@ -47,16 +47,16 @@ struct SurfaceProfileProbe final : Probe {
   std::vector<FieldRequest> needs(const Model&) const override { return {{set, &fields::volume}}; }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
-    std::vector<Vec3> places;
-    for (int k = 0; k < points; ++k) places.push_back(place(k));
-    const auto heights = surface_heights(scene, set, places);
+    std::vector<Vec3> positions;
+    for (int k = 0; k < points; ++k) positions.push_back(point(k));
+    const auto heights = surface_heights(scene, set, positions);
     std::copy(heights.begin(), heights.end(), out.begin());
     double n = 0, sx = 0, sz = 0, sxx = 0, sxz = 0;
     for (int k = 0; k < points; ++k) {
       const auto& z = heights[static_cast<std::size_t>(k)];
       if (!z) continue;
-      const Vec3 way = place(k) - from;
-      const double x = std::hypot(way.x(), way.y());
+      const Vec3 offset = point(k) - from;
+      const double x = std::hypot(offset.x(), offset.y());
       n += 1;
       sx += x;
       sz += *z;
@@ -69,7 +69,7 @@ struct SurfaceProfileProbe final : Probe {
   }
 
  private:
-  Vec3 place(int k) const { return from + (to - from) * k / (points - 1); }
+  Vec3 point(int k) const { return from + (to - from) * k / (points - 1); }
 };
 
 const Register<ProbeSpec, SurfaceProfileProbe> registered_surface_profile{"surface_profile"};

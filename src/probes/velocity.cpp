@@ -23,7 +23,7 @@ struct VelocityProbe final : Probe {
   std::vector<FieldRequest> needs(const Model&) const override {
     return {{set, &fields::velocity}, {set, &fields::volume}};
   }
-  std::vector<Vec3> places() const override { return {at}; }
+  std::vector<Vec3> positions() const override { return {at}; }
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     const PointFit fit(scene, set, at);
     if (fit.supported()) store_vector(scene, fit(scene.vector(set, fields::velocity)), out);

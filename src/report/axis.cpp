@@ -86,7 +86,7 @@ AxisScale::AxisScale(const ChartAxis& axis, double low, double high, int most_ti
   decimals_ = std::clamp(static_cast<int>(std::ceil(-std::log10(step) - nearness)), 0, 12);
 }
 
-double AxisScale::place(double value) const {
+double AxisScale::position(double value) const {
   if (!std::isfinite(value)) return nan;
   if (!axis_.log) return (value - low_) / (high_ - low_);
   return value > 0 ? std::log(value / low_) / std::log(high_ / low_) : nan;

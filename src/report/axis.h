@@ -32,7 +32,7 @@ class AxisScale {
 
   /// 0 at the low end, 1 at the high end, outside of them beyond; NaN for what the axis cannot
   /// show.
-  double place(double value) const;
+  double position(double value) const;
   const std::vector<double>& ticks() const { return ticks_; }
   /// The text at a mark; of a linear axis without the power of ten that its title names.
   std::string text(double tick) const;

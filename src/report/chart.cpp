@@ -164,8 +164,8 @@ class Drawing {
     return letters(what) <= most ? what : shortened(what, most);
   }
 
-  double px(double x) const { return plot_.x0 + x_.place(x) * (plot_.x1 - plot_.x0); }
-  double py(double y) const { return plot_.y1 - y_.place(y) * (plot_.y1 - plot_.y0); }
+  double px(double x) const { return plot_.x0 + x_.position(x) * (plot_.x1 - plot_.x0); }
+  double py(double y) const { return plot_.y1 - y_.position(y) * (plot_.y1 - plot_.y0); }
 
   void axes() {
     std::string grid;

@@ -54,9 +54,9 @@ constexpr std::array anchors{Color{0.20, 0.15, 0.44, 1}, Color{0.17, 0.36, 0.64,
 
 Color map_color(double share) {
   const double s = share > 0 ? std::min(share, 1.0) : 0.0;  // NaN: 0
-  const double place = s * (anchors.size() - 1);
-  const auto k = std::min(static_cast<std::size_t>(place), anchors.size() - 2);
-  const double f = place - static_cast<double>(k);
+  const double position = s * (anchors.size() - 1);
+  const auto k = std::min(static_cast<std::size_t>(position), anchors.size() - 2);
+  const double f = position - static_cast<double>(k);
   const Lab from = to_lab(anchors[k]), to = to_lab(anchors[k + 1]);
   const double darkest = to_lab(anchors.front()).L, lightest = to_lab(anchors.back()).L;
   return from_lab({darkest + s * (lightest - darkest), from.a + f * (to.a - from.a),
@@ -92,7 +92,7 @@ std::string color_bar_svg(const std::string& title, const std::string& unit, dou
                     margin + k * length / steps, top, length / steps + (k + 1 < steps ? 0.5 : 0.0),
                     bar, css_color(map_color((k + 0.5) / steps)));
   for (const double t : axis.ticks()) {
-    const double x = margin + axis.place(t) * length;
+    const double x = margin + axis.position(t) * length;
     out += fmt::format(
         "\n<path d=\"M{0:.1f} {1}v4\" stroke=\"currentColor\" stroke-opacity=\".6\"/><text "
         "x=\"{0:.1f}\" y=\"{2}\" text-anchor=\"middle\">{3}</text>",

@@ -130,10 +130,11 @@ std::string guard_sentence(const Json& guard) {
   add("effect", text_at(guard, "/effect"));
   add("set", text_at(guard, "/set"));
   if (const auto p = number_at(guard, "/particle")) add("particle", fmt::format("{:.0f}", *p));
-  if (const Json& place = value_at(guard, "/place"); place.is_array() && place.size() == 3)
-    add("at", fmt::format("({}, {}, {}) m", number_text(number_at(place, "/0").value_or(NAN)),
-                          number_text(number_at(place, "/1").value_or(NAN)),
-                          number_text(number_at(place, "/2").value_or(NAN))));
+  if (const Json& position = value_at(guard, "/position");
+      position.is_array() && position.size() == 3)
+    add("at", fmt::format("({}, {}, {}) m", number_text(number_at(position, "/0").value_or(NAN)),
+                          number_text(number_at(position, "/1").value_or(NAN)),
+                          number_text(number_at(position, "/2").value_or(NAN))));
   if (const auto t = number_at(guard, "/time_s")) add("t =", number_text(*t, 6) + " s");
   return out;
 }

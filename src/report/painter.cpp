@@ -258,10 +258,10 @@ std::vector<std::pair<Index, Index>> outline(std::span<const Vec3> points, int c
   // The sides of all faces, sorted by the lower of their two corners: those of one corner are few.
   std::vector<std::size_t> begin(points.size() + 1, 0);
   for (std::size_t t = 0; t < triangles; ++t) {
-    const auto place = [&](std::size_t k) {
+    const auto corner_point = [&](std::size_t k) {
       return points[static_cast<std::size_t>(corner(t, k))];
     };
-    normals[t] = (place(1) - place(0)).cross(place(2) - place(0));
+    normals[t] = (corner_point(1) - corner_point(0)).cross(corner_point(2) - corner_point(0));
     if (!(normals[t].norm() > 0)) continue;
     normals[t].normalize();
     for (std::size_t k = 0; k < 3; ++k) ++begin[lower(t, k) + 1];

@@ -35,7 +35,8 @@ const std::vector<Quantity>& known_quantities() {
   static const std::vector<Quantity> known{
       {"velocity", "Speed", "", 0.01, true},
       {"pressure", "Pressure of the water", "water"},
-      {"plastic_strain", "Plastic strain of the soil", "soil", 0.02, true},  // large in few places
+      {"plastic_strain", "Plastic strain of the soil", "soil", 0.02,
+       true},  // large in few positions
       {"von_mises", "von Mises stress of the solids", "solids", 0.01, true}};
   return known;
 }
@@ -369,15 +370,15 @@ ScenePictures paint_runs(std::span<const RunRecord> runs, const PictureWishes& w
   return Paintings(runs, wishes)();
 }
 
-double typical_spacing(std::span<const Vec3> places) {
-  if (places.size() < 2) return 0;
+double typical_spacing(std::span<const Vec3> positions) {
+  if (positions.size() < 2) return 0;
   std::vector<double> nearest;
   constexpr std::size_t probes = 24;
-  for (std::size_t k = 0; k < std::min(probes, places.size()); ++k) {
-    const std::size_t i = k * places.size() / std::min(probes, places.size());
+  for (std::size_t k = 0; k < std::min(probes, positions.size()); ++k) {
+    const std::size_t i = k * positions.size() / std::min(probes, positions.size());
     double least = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < places.size(); ++j)
-      if (j != i) least = std::min(least, (places[j] - places[i]).squaredNorm());
+    for (std::size_t j = 0; j < positions.size(); ++j)
+      if (j != i) least = std::min(least, (positions[j] - positions[i]).squaredNorm());
     if (std::isfinite(least) && least > 0) nearest.push_back(std::sqrt(least));
   }
   if (nearest.empty()) return 0;

@@ -48,7 +48,7 @@ ScenePictures paint_runs(std::span<const RunRecord> runs, const PictureWishes& w
 
 /// The spacing of particles (m), from the distances of some of them to their nearest neighbours; 0
 /// when there are fewer than two.
-double typical_spacing(std::span<const Vec3> places);
+double typical_spacing(std::span<const Vec3> positions);
 
 /// Colour of a set without a quantity.
 Color set_color(const std::string& set);

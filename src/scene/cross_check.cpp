@@ -94,16 +94,16 @@ void check_in_walls(World<Dim>& world, const ParticleSet<Dim>& set, Diagnostics&
   const Clash clash = nearer_than(0.45);
   if (clash.count == 0 && set.phase() == "soil") {
     // Walls repel soil nearer than 0.85 spacings (see SoilWallPair), with its bulk modulus.
-    const Clash pushed = nearer_than(0.7);
-    if (pushed.count == 0) return;
-    const std::string path = fmt::format("bodies[{}].shape", pushed.body);
+    const Clash repelled = nearer_than(0.7);
+    if (repelled.count == 0) return;
+    const std::string path = fmt::format("bodies[{}].shape", repelled.body);
     found.warning(
         "W134", model.place_of(path), path,
         fmt::format("soil overlaps the wall's contact range: {} of its particles lie nearer than "
                     "0.7 spacings to a wall particle, one of body '{}' at {}, beside boundary '{}'",
-                    pushed.count, model.bodies[static_cast<std::size_t>(pushed.body)].name,
-                    point_text(pushed.at),
-                    model.boundaries[static_cast<std::size_t>(pushed.wall)]->name),
+                    repelled.count, model.bodies[static_cast<std::size_t>(repelled.body)].name,
+                    point_text(repelled.at),
+                    model.boundaries[static_cast<std::size_t>(repelled.wall)]->name),
         "the initial repulsion adds energy; align the wall with the lattice, or start half a "
         "spacing away from it");
     return;
@@ -161,7 +161,7 @@ void check_probes(const World<Dim>& world, Diagnostics& found) {
     const auto& probe = dynamic_cast<const Probe&>(*model.probes[k]);
     CheckContext context(found, model.places, path, model.dimension, model.resolution);
     probe.inspect(model, context);
-    for (const Vec3& at : probe.places())
+    for (const Vec3& at : probe.positions())
       if (!box.grown(model.resolution).contains(at))
         found.warning(
             "W123", model.place_of(path + ".at"), path + ".at",

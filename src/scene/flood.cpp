@@ -235,7 +235,7 @@ void FloodGrid::measure_clearance() {
   }
 }
 
-std::vector<FloodGrid::Step> FloodGrid::widest_way(const Cells& pool, int top) {
+std::vector<FloodGrid::Step> FloodGrid::widest_path(const Cells& pool, int top) {
   measure_clearance();
   forget();
   // The widest cells first: each cell is then reached by the widest path.
@@ -253,7 +253,7 @@ std::vector<FloodGrid::Step> FloodGrid::widest_way(const Cells& pool, int top) {
     widest = std::max(widest, d);
   };
   for (const Cell c : pool) push(c, start);
-  std::vector<Step> way;
+  std::vector<Step> path;
   while (widest >= 0) {
     const auto w = static_cast<std::size_t>(widest);
     if (head[w] == queue[w].size()) {
@@ -265,21 +265,21 @@ std::vector<FloodGrid::Step> FloodGrid::widest_way(const Cells& pool, int top) {
     if (state_[c] & edge) {
       while (came[c] != start) {
         const std::uint8_t from = came[c];
-        way.push_back({outer(center(c)), clearance_[c], from == from_above});
+        path.push_back({outer(center(c)), clearance_[c], from == from_above});
         at = c;
         c = static_cast<Cell>(from == from_above   ? at + layer_
                               : from == from_below ? at - layer_
                                                    : at - sideways_[from - 1u]);
       }
-      std::reverse(way.begin(), way.end());
-      return way;
+      std::reverse(path.begin(), path.end());
+      return path;
     }
     for (std::size_t k = 0; k < sideways_.size(); ++k)
       push(at + sideways_[k], static_cast<std::uint8_t>(k + 1));
     push(at - layer_, from_above);
     push(at + layer_, from_below);
   }
-  return way;
+  return path;
 }
 
 }  // namespace sphgeo

@@ -60,7 +60,7 @@ class FloodGrid {
   };
   /// The path from the pool to the outside whose narrowest point is as wide as possible, without
   /// rising above `top`; empty when there is none.
-  std::vector<Step> widest_way(const Cells& pool, int top);
+  std::vector<Step> widest_path(const Cells& pool, int top);
 
   /// The layer of a cell, counted upwards.
   int layer(Cell c) const { return static_cast<int>(c / layer_); }

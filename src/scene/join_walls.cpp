@@ -93,8 +93,8 @@ void join_walls(std::vector<WallPart>& parts, double dp, double reach, const Vec
       best = j;
     });
     if (best < 0) return;  // deeper than the kernel support
-    const Vec3 way = to_space<Dim>(Vec<Dim>(exposed[static_cast<std::size_t>(best)] - at));
-    if (way.norm() > 1e-6 * dp) p.normal = way.normalized();
+    const Vec3 towards = to_space<Dim>(Vec<Dim>(exposed[static_cast<std::size_t>(best)] - at));
+    if (towards.norm() > 1e-6 * dp) p.normal = towards.normalized();
   });
 }
 

@@ -155,31 +155,31 @@ class LeakSearch {
     }
     const Index volume = static_cast<Index>(pool.at.size()) << frame_.dimension;
     const auto spill = grid_.spill_layer(cells, volume, top);
-    const auto way = grid_.widest_way(cells, spill.value_or(top));
-    if (way.empty()) return;
-    const std::size_t k = narrowest(way);
-    const bool roofed = wall_above(way[k].at);
+    const auto path = grid_.widest_path(cells, spill.value_or(top));
+    if (path.empty()) return;
+    const std::size_t k = narrowest(path);
+    const bool roofed = wall_above(path[k].at);
     if (spill) {
       // Over a rim, or through a slit open at the top: only when walls surround the pool, so that a
       // weir or a low wall is not reported.
-      if (!roofed && !way[k].down && (least < 0.9 || !upright_)) return;
+      if (!roofed && !path[k].down && (least < 0.9 || !upright_)) return;
     } else {
       // It would come to rest inside, but a splash reaches a hole. It is a leak if it falls out of
       // the scene from there.
-      const Vec3& beyond = way[std::min(k + 8, way.size() - 1)].at;
+      const Vec3& beyond = path[std::min(k + 8, path.size() - 1)].at;
       if (!roofed || wall_below(beyond)) return;
     }
-    report(pool, way[k].at);
+    report(pool, path[k].at);
   }
 
   // The middle of the narrowest part of the path.
-  static std::size_t narrowest(const std::vector<FloodGrid::Step>& way) {
-    int least = way[0].clearance;
-    for (const auto& s : way) least = std::min(least, s.clearance);
+  static std::size_t narrowest(const std::vector<FloodGrid::Step>& path) {
+    int least = path[0].clearance;
+    for (const auto& s : path) least = std::min(least, s.clearance);
     std::size_t first = 0;
-    while (way[first].clearance != least) ++first;
+    while (path[first].clearance != least) ++first;
     std::size_t last = first;
-    while (last + 1 < way.size() && way[last + 1].clearance == least) ++last;
+    while (last + 1 < path.size() && path[last + 1].clearance == least) ++last;
     return (first + last) / 2;
   }
 

@@ -11,8 +11,7 @@
 
 namespace sphgeo {
 
-/// The shadows that the walls cast along one axis: for every position normal to it, how far they
-/// reach.
+/// The shadows that the walls cast along one axis: for every position normal to it, their reach.
 class Shadow {
  public:
   /// `box` (m) must hold all points that are added or asked about.

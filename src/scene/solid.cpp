@@ -34,14 +34,15 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
     const Vec3& at = filling.at[k];
     const Index i = first + static_cast<Index>(k);
     const std::int32_t clamp = clamp_of(body, at);
-    Vec3 place = at, v(body.velocity[0](at, 0), body.velocity[1](at, 0), body.velocity[2](at, 0));
+    Vec3 position = at,
+         v(body.velocity[0](at, 0), body.velocity[1](at, 0), body.velocity[2](at, 0));
     if (clamp >= 0) {
       ++held[static_cast<std::size_t>(clamp)];
       const auto& motion = body.clamped[static_cast<std::size_t>(clamp)].motion;
-      if (motion) place = motion->position(at, 0);
+      if (motion) position = motion->position(at, 0);
       v = motion ? motion->velocity(at, 0) : Vec3::Zero();
     }
-    if (!v.allFinite() || !place.allFinite()) {
+    if (!v.allFinite() || !position.allFinite()) {
       found.error(
           "E111", model.place_of(path), path,
           fmt::format(
@@ -53,7 +54,7 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
     set.ids()[i] = static_cast<Id>(i);
     set.tag(fields::part)[i] = static_cast<std::int32_t>(b);
     set.tag(fields::clamp)[i] = clamp;
-    set.vector(fields::position)[i] = to_scene<Dim>(place);
+    set.vector(fields::position)[i] = to_scene<Dim>(position);
     set.vector(fields::reference_position)[i] = to_scene<Dim>(at);
     set.vector(fields::velocity)[i] = to_scene<Dim>(v);
     set.scalar(fields::reference_volume)[i] = volume;

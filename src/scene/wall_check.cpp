@@ -114,7 +114,7 @@ void check_water_in_solid(const World<Dim>& world, const Solid& s, Diagnostics& 
 void check_probes(const Model& model, const std::vector<Solid>& solids, Diagnostics& found) {
   for (std::size_t k = 0; k < model.probes.size(); ++k) {
     const auto& probe = dynamic_cast<const Probe&>(*model.probes[k]);
-    for (const Vec3& at : probe.places())
+    for (const Vec3& at : probe.positions())
       for (const Solid& s : solids) {
         if (!s.shape || !s.in_place || s.wall->motion) continue;
         const double depth = s.shape->box().contains(at) ? -s.shape->signed_distance(at) : 0;

@@ -37,11 +37,12 @@ std::vector<SurfacePoint> surface_of(const std::vector<WallPart*>& walls, double
     for (const WallPoint& p : wall->points) {
       if (wall->solid->signed_distance(p.position) < -dp) continue;
       const std::size_t first = surface.size();
-      const auto look_from = [&](const Vec3& place) {
-        const Vec3 n = normal_of(*wall->solid, place, dp, dimension);
+      const auto look_from = [&](const Vec3& surface_point) {
+        const Vec3 n = normal_of(*wall->solid, surface_point, dp, dimension);
         if (n.norm() < 0.99) return false;
         const Vec3 at =
-            p.position + ((place - p.position).dot(n) - wall->solid->signed_distance(place)) * n;
+            p.position +
+            ((surface_point - p.position).dot(n) - wall->solid->signed_distance(surface_point)) * n;
         const bool known =
             std::any_of(surface.begin() + static_cast<std::ptrdiff_t>(first), surface.end(),
                         [&](const SurfacePoint& s) { return s.normal.dot(n) > 0.99; });

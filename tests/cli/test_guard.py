@@ -71,7 +71,7 @@ class Guard(ProgramTest):
         again = self.call("run", "deck.yaml", "-q", "--threads", "1", "-o", "run", "--resume", *words)
         self.assertEqual(again.returncode, 3, again.stderr.decode())
         second = json.loads((self.here / "run/summary.json").read_text())["guard"]
-        for key in ("cause", "set", "particle", "place", "time_s"):
+        for key in ("cause", "set", "particle", "position", "time_s"):
             self.assertEqual(second.get(key), guard.get(key), key)
 
     def test_a_value_that_is_no_number(self):

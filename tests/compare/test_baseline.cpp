@@ -33,7 +33,7 @@ RunData long_run() {
   run.probes = {a, b};
   SetState set{"soil", 1000, {}, {{"stress.xx", {}}}};
   for (int k = 0; k < 1000; ++k) {
-    set.places.emplace_back(k, 0.5 * k, 1 / (1.0 + k));
+    set.positions.emplace_back(k, 0.5 * k, 1 / (1.0 + k));
     set.fields[0].values.push_back(std::cos(k));
   }
   run.sets = {set};

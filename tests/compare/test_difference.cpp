@@ -26,7 +26,7 @@ RunData some_run() {
   run.probes = {curve};
   SetState set{"water", 50, {}, {{"pressure", {}}}};
   for (int k = 0; k < 50; ++k) {
-    set.places.emplace_back(0.1 * k, 0, 0);
+    set.positions.emplace_back(0.1 * k, 0, 0);
     set.fields[0].values.push_back(100 * k);
   }
   run.sets = {set};
@@ -83,14 +83,15 @@ TEST_CASE("curves sampled at other times are compared by interpolation, gaps are
 
 TEST_CASE("fields are compared at the nearest particle, whatever the order of particles") {
   RunData run = some_run();
-  std::reverse(run.sets[0].places.begin(), run.sets[0].places.end());
+  std::reverse(run.sets[0].positions.begin(), run.sets[0].positions.end());
   std::reverse(run.sets[0].fields[0].values.begin(), run.sets[0].fields[0].values.end());
   CHECK(all_pass(compare_runs(run, some_run(), {0, 0, 0, 0, 0, 0, 0, {}})));
   for (double& p : run.sets[0].fields[0].values) p += 49;
   const auto all = compare_runs(run, some_run(), {});
   CHECK(find(all, "field water.pressure").difference == doctest::Approx(0.01));
-  for (Vec3& x : run.sets[0].places) x.z() += 0.02;
-  CHECK(find(compare_runs(run, some_run(), {}), "places water").difference == doctest::Approx(0.2));
+  for (Vec3& x : run.sets[0].positions) x.z() += 0.02;
+  CHECK(find(compare_runs(run, some_run(), {}), "positions water").difference ==
+        doctest::Approx(0.2));
 }
 
 TEST_CASE("noise about zero beside a signal is measured by a hundredth of the signal") {
@@ -112,7 +113,7 @@ TEST_CASE("noise about zero beside a signal is measured by a hundredth of the si
 TEST_CASE("lost particles, another end, another ledger and a result that now fails are findings") {
   RunData run = some_run();
   run.status = "unstable";
-  run.sets[0].places.pop_back();
+  run.sets[0].positions.pop_back();
   run.sets[0].fields[0].values.pop_back();
   run.sets[0].particles = 49;
   run.ledger[0].second.final = {49};

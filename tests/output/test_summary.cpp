@@ -77,7 +77,7 @@ TEST_SUITE("output") {
     CHECK(j["ledger"]["momentum"]["final"][1] == 2);
     CHECK(j["ledger"]["momentum"]["final"][2].is_null());
     CHECK(j["guard"]["particle"] == 7);
-    CHECK(j["guard"]["place"][2] == 3);
+    CHECK(j["guard"]["position"][2] == 3);
     CHECK(j["guard"]["max_speed"] == 4);
     for (const char* key : {"version", "deck_hash", "threads", "wall_s", "memory_peak_bytes"})
       CHECK(j.contains(key));

@@ -59,14 +59,14 @@ void check_fit() {
     const auto out = rig.sample(k);
     const auto& probe = dynamic_cast<const Probe&>(*rig.model.probes[k]);
     REQUIRE(out[0].has_value());
-    CHECK(*out[0] == doctest::Approx(p(probe.places()[0])).epsilon(1e-9));
+    CHECK(*out[0] == doctest::Approx(p(probe.positions()[0])).epsilon(1e-9));
     // The share of the kernel: all inside, a half on a face, a quarter on an edge, an eighth in a
     // corner of 3D.
     const double full = k == 0 ? 1 : k < 3 ? 0.5 : Dim == 2 ? 0.25 : 0.125;
     CHECK(*out[1] == doctest::Approx(full).epsilon(0.2));
   }
   const auto speed = rig.sample(4);
-  const Vec3 expected = v(dynamic_cast<const Probe&>(*rig.model.probes[4]).places()[0]);
+  const Vec3 expected = v(dynamic_cast<const Probe&>(*rig.model.probes[4]).positions()[0]);
   REQUIRE(speed.size() == Dim);
   for (int k = 0; k < Dim; ++k)
     CHECK(*speed[static_cast<std::size_t>(k)] ==
@@ -96,7 +96,7 @@ TEST_SUITE("probes") {
       rig.water().scalar(fields::pressure)[i] = 100 + 30 * x.x() - 70 * x.y() - 900 * x.z();
     }
     for (std::size_t k = 0; k < 4; ++k) {
-      const Vec3 x = dynamic_cast<const Probe&>(*rig.model.probes[k]).places()[0];
+      const Vec3 x = dynamic_cast<const Probe&>(*rig.model.probes[k]).positions()[0];
       REQUIRE(rig.sample(k)[0].has_value());
       CHECK(*rig.sample(k)[0] ==
             doctest::Approx(100 + 30 * x.x() - 70 * x.y() - 900 * x.z()).epsilon(1e-9));

@@ -64,15 +64,15 @@ TEST_SUITE("report") {
     CHECK(small.text(-0.0002) == "−200");
     const AxisScale plain({"share", "1", false, {}, {}}, 0, 1, 5);
     CHECK(plain.title() == "share");
-    CHECK(plain.place(0.52) == doctest::Approx(0.5));
+    CHECK(plain.position(0.52) == doctest::Approx(0.5));
   }
 
   TEST_CASE("a logarithmic axis shows no zero and no negative value") {
     const AxisScale axis({"error", "", true, {}, {}}, 1e-3, 1, 5);
-    CHECK(std::isnan(axis.place(0)));
-    CHECK(std::isnan(axis.place(-1)));
-    CHECK(axis.place(1e-3) > 0);
-    CHECK(axis.place(1) < 1);
+    CHECK(std::isnan(axis.position(0)));
+    CHECK(std::isnan(axis.position(-1)));
+    CHECK(axis.position(1e-3) > 0);
+    CHECK(axis.position(1) < 1);
     CHECK(axis.text(0.01) == "0.01");
     CHECK(axis.text(1e-5) == "10⁻⁵");
     Chart chart = simple({1, 10, 100, 1000}, {0.1, 0, 0.2, 0.3});

@@ -180,7 +180,7 @@ TEST_SUITE("report") {
     summary["status"] = "unstable";
     summary["message"] = "set 'water' became unstable";
     summary["guard"] = {{"tripped", true},   {"cause", "speed"}, {"effect", "water_kick"},
-                        {"set", "water"},    {"particle", 262},  {"place", {1.012, 0.0, 0.3533}},
+                        {"set", "water"},    {"particle", 262},  {"position", {1.012, 0.0, 0.3533}},
                         {"time_s", 0.916062}};
     write_file_atomically(folder / "summary.json", summary.dump());
     const std::string page = report_page(read_runs({folder.path()}));

@@ -108,12 +108,12 @@ TEST_SUITE("scene") {
         CHECK(grid.escapes(pools[0], top) == (missing > 0));
         const auto spill = grid.spill_layer(pools[0], static_cast<Index>(8 * liquid.size()), top);
         CHECK(spill.has_value() == (missing > 0));
-        const auto way = grid.widest_way(pools[0], top);
-        CHECK(way.empty() == (missing == 0));
+        const auto path = grid.widest_path(pools[0], top);
+        CHECK(path.empty() == (missing == 0));
         bool through = false;
         const Vec3 hole = missing == 1 ? Vec3(0.65 + off, 0.35 + 2 * off, 0.15 - off)
                                        : Vec3(0.25 + off, 0.25 + 2 * off, -0.05 - off);
-        for (const auto& step : way)
+        for (const auto& step : path)
           through = through || (step.at - hole).cwiseAbs().maxCoeff() < 0.5 * dp;
         CHECK(through == (missing > 0));
       }
