@@ -27,7 +27,7 @@ struct RunDifference {
 /// All that the baseline holds, compared. A component of a vector, or a column of a probe, whose
 /// range is below a hundredth of that of its companions (the other components; the columns of the
 /// same unit) is measured by that hundredth: it is noise about zero. The list has the worst first,
-/// by difference over tolerance. What only the run has is told (kind `new`) and passes.
+/// by difference over tolerance. What only the run has is reported (kind `new`) and passes.
 std::vector<RunDifference> compare_runs(const RunData& run, const RunData& baseline,
                                         const Tolerances& tolerances);
 

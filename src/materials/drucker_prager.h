@@ -26,7 +26,7 @@ namespace drucker_prager {
 inline constexpr double unbounded = 1e150;
 
 /// The edge of Mohr and Coulomb's pyramid on which the cone lies. Eq. 14 is that of plane strain;
-/// in triaxial compression its soil of 30 degrees holds as much as one of 21.
+/// in triaxial compression a soil of 30 degrees then has the strength of 21 degrees.
 enum class ConeFit { plane_strain, compression, extension };
 
 /// alpha_phi or alpha_psi of an angle whose tangent is given (Eq. 14 in plane strain).

@@ -56,7 +56,7 @@ TEST_CASE("a baseline is small and the run that it was made of equals it") {
   CHECK(base.probes[0].t.back() == doctest::Approx(333));
   CHECK(std::isnan(base.probes[0].y.back()));
   CHECK(base.sets[0].particles == 1000);
-  CHECK(base.sets[0].places.size() == 80);
+  CHECK(base.sets[0].positions.size() == 80);
   for (const RunDifference& d : compare_runs(long_run(), base, {})) {
     CAPTURE(d.whole_name());
     CHECK(d.pass);
