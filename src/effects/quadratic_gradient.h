@@ -42,9 +42,8 @@ std::optional<double> clamp_distance(const Body& body, const Vec<Dim>& at) {
 template <int Dim>
 PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
   constexpr int terms = Dim + Dim * (Dim + 1) / 2;
-  using Terms = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, 9, 1>;
-  using Moments = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 9, 9>;
-  using Factor = Eigen::Matrix<double, Eigen::Dynamic, Dim, 0, 9, Dim>;
+  using Terms = Eigen::Matrix<double, terms, 1>;
+  using Moments = Eigen::Matrix<double, terms, terms>;
   const ParticleSet<Dim>& set = world.set(name);
   const auto& at = set.vector(fields::reference_position);
   const auto& volume = set.scalar(fields::reference_volume);
@@ -54,7 +53,7 @@ PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
   const double h = set.smoothing_length();
   const Kernel<Dim> kernel(h);
   const auto monomials = [&](const Vec<Dim>& r) {  // of the way to the neighbor
-    Terms p(terms);
+    Terms p;
     for (int k = 0; k < Dim; ++k) p[k] = r[k] / h;
     for (int k = 0, n = Dim; k < Dim; ++k)
       for (int l = k; l < Dim; ++l, ++n) p[n] = r[k] * r[l] / (h * h);
@@ -69,8 +68,8 @@ PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
     for (std::size_t t = 0; t < block.size(); ++t) {
       const Index i = block.targets[t];
       const Mat<Dim> inverse = to_matrix<Dim>(correction[i]);
-      Moments moments = Moments::Zero(terms, terms);
-      Factor wrong = Factor::Zero(terms, Dim);
+      Moments moments = Moments::Zero();
+      Eigen::Matrix<double, terms, Dim> wrong = Eigen::Matrix<double, terms, Dim>::Zero();
       const auto for_neighbors = [&](auto&& f) {
         for (std::uint32_t e = 0; e < block.count[t]; ++e) {
           const auto j = static_cast<Index>(block.entries[block.begin[t] + e] / 8);
@@ -113,7 +112,7 @@ PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
       for (int n = 0; n < terms; ++n)
         inverse_of[n] =
             inverse_of[n] > 1e-5 * axes.eigenvalues()[terms - 1] ? 1 / inverse_of[n] : 0;
-      const Factor factor =
+      const Eigen::Matrix<double, terms, Dim> factor =
           -axes.eigenvectors() * inverse_of.asDiagonal() * axes.eigenvectors().transpose() * wrong;
       if ((moments * factor + wrong).norm() > 1e-6 * wrong.norm()) continue;
       for_neighbors([&](Index j, const Vec<Dim>&, double w, const Terms& p) {
