@@ -89,7 +89,8 @@ std::vector<double> wall_bulk(const World<Dim>& world) {
   CellGrid<Dim> grid;
   std::vector<Vec<Dim>> at(static_cast<std::size_t>(walls.size()));
   for (Index w = 0; w < walls.size(); ++w) at[static_cast<std::size_t>(w)] = y[w];
-  grid.build(at, world.grid("skin").frame(), kernel.support());
+  grid.build(at, world.grid("skin").frame(), kernel.support(),
+             {id.data(), static_cast<std::size_t>(id.size())});
   std::vector<double> bulk(static_cast<std::size_t>(walls.size()));
   parallel_for(walls.size(), [&](Index w) {
     double sum = 0;

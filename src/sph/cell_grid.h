@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "core/aligned.h"
 #include "core/types.h"
@@ -13,15 +12,19 @@
 
 namespace sphgeo {
 
-/// Particles of one set in the order of cells (row-major, x fastest; by index within a cell). It
-/// holds its own copy of the positions, in fixed point, so it answers for the moment of `build`.
+/// Particles of one set in the order of cells (row-major, x fastest), and of their ids within a
+/// cell. The cells are those of the frame: their edges and corners depend on the frame and on the
+/// reach alone, never on which particles the set holds, so two particles of one set stand in the
+/// same order in any part of it. The grid holds its own copy of the positions, in fixed point, so
+/// it answers for the moment of `build`.
 template <int Dim>
 class CellGrid {
  public:
   /// Sorts `r` [m] into cells about as large as `reach` [m], the largest radius of later searches
-  /// (any other radius works too, only slower). Cells grow if the box would need too many of them.
-  /// Throws Error for more than 2^29 - 1 particles.
-  void build(std::span<const Vec<Dim>> r, const FixedPoint<Dim>& frame, double reach);
+  /// (any other radius works too, only slower). `ids` are those of the particles; without any,
+  /// their indices take their place. Throws Error for more than 2^29 - 2 particles.
+  void build(std::span<const Vec<Dim>> r, const FixedPoint<Dim>& frame, double reach,
+             std::span<const Id> ids = {});
 
   /// Particle at each place of the cell order: the permutation that sorts the set.
   std::span<const std::uint32_t> order() const { return {order_.data(), size_}; }
@@ -76,8 +79,8 @@ class CellGrid {
         if (half2 < 0.0) continue;
         const double half = std::sqrt(half2) + 1.0;
         const std::int64_t row = (c2 * count_[1] + c1) * count_[0];
-        const std::size_t begin = start_[static_cast<std::size_t>(row + cell(lo[0] - half, 0))];
-        const std::size_t end = start_[static_cast<std::size_t>(row + cell(hi[0] + half, 0) + 1)];
+        const std::size_t begin = first_place(row + cell(lo[0] - half, 0));
+        const std::size_t end = first_place(row + cell(hi[0] + half, 0) + 1);
         if (begin < end) f(begin, end);
       }
     }
@@ -89,35 +92,53 @@ class CellGrid {
   const std::uint32_t* place_particle() const { return order_.data(); }
 
  private:
-  // Monotone in x, and clamped: the cells of an interval hold all particles of the interval.
+  // Number of a cell along one axis, counted from the first that the set occupies. Monotone in x,
+  // and clamped: the cells of an interval hold all particles of the interval.
   std::int64_t cell(double x, int d) const {
-    const double c = (x - lowest_[d]) * per_cell_[d];
-    return c > 0.0 ? static_cast<std::int64_t>(std::min(c, last_[d])) : 0;
+    const double c = (x - FixedPoint<Dim>::lowest) * per_edge_[d];
+    return static_cast<std::int64_t>(std::clamp(c, first_[d], last_[d])) -
+           static_cast<std::int64_t>(first_[d]);
+  }
+
+  // Number of the cell of a point, row-major in the box of cells that the set occupies.
+  std::int64_t key(const std::int32_t* x) const {
+    std::int64_t k = 0;
+    for (int d = Dim - 1; d >= 0; --d) k = k * count_[d] + cell(x[d], d);
+    return k;
+  }
+
+  // Place of the first particle in this cell or in a later one.
+  std::size_t first_place(std::int64_t cell_key) const {
+    return shift_ == 0 ? start_[static_cast<std::size_t>(cell_key)] : search_place(cell_key);
   }
 
   // Squared distance along axis d from a box to cell c; 0 where they overlap, a little less than
   // true at most.
   double gap2(const std::int32_t* lo, const std::int32_t* hi, std::int64_t c, int d) const {
-    const double begin = lowest_[d] + static_cast<double>(c) * edge_[d];
+    const double begin = FixedPoint<Dim>::lowest + (first_[d] + static_cast<double>(c)) * edge_[d];
     const double gap = std::max({begin - hi[d] - 1.0, lo[d] - begin - edge_[d] - 1.0, 0.0});
     return gap * gap;
   }
 
   void choose_cells(const std::int32_t* lo, const std::int32_t* hi, double reach);
-  void sort();
+  void fill_buckets();
+  void sort_buckets(std::span<const Id> ids);
+  std::size_t search_place(std::int64_t cell_key) const;
 
   FixedPoint<Dim> frame_;
   std::size_t size_ = 0;
-  double lowest_[3] = {0, 0, 0};       // corner of the box, in quanta
   double edge_[3] = {1, 1, 1};         // edge of a cell, in quanta
-  double per_cell_[3] = {1, 1, 1};     // 1 / edge
-  std::int64_t count_[3] = {1, 1, 1};  // cells along each axis
-  double last_[3] = {0, 0, 0};         // count - 1
-  std::vector<std::uint32_t> start_{0, 0};
+  double per_edge_[3] = {1, 1, 1};     // 1 / edge
+  double first_[3] = {0, 0, 0};        // the cells that the set occupies, along each axis
+  double last_[3] = {0, 0, 0};         // counted from the lowest place of the frame
+  std::int64_t count_[3] = {1, 1, 1};  // last - first + 1
+  // The table of the first place of each bucket, which is 2^shift cells in a row; and the end,
+  // twice.
+  int shift_ = 0;
+  AlignedVector<std::uint32_t> start_;
   AlignedVector<std::uint32_t> order_;
   AlignedVector<std::int32_t> coordinate_[Dim];
-  AlignedVector<std::uint32_t> key_;  // scratch of build
-  AlignedVector<std::int32_t> unsorted_[Dim];
+  AlignedVector<std::int32_t> unsorted_[Dim];  // scratch of build
 };
 
 extern template class CellGrid<1>;

@@ -19,6 +19,8 @@ struct FixedPoint {
   Vec<Dim> origin = Vec<Dim>::Zero();  ///< position of the integer 0 [m]
   double quantum = 0x1p-24;            ///< one unit [m], a power of two
   double per_quantum = 0x1p24;         ///< 1 / quantum, exact
+  /// Integers of positions are never below this.
+  static constexpr double lowest = 0x1p28;
 
   /// Fits the range to a box [m]; `support` is the largest reach of any kernel [m].
   static FixedPoint fit(const Vec<Dim>& lo, const Vec<Dim>& hi, double support) {
@@ -46,9 +48,9 @@ struct FixedPoint {
   /// Coordinate k relative to the origin [m], clamped to the range.
   double to_local(double x, int k) const {
     const double local = x - origin[k];
-    const double lowest = 0x1p28 * quantum;
-    const double highest = 0x1.cp30 * quantum;
-    return local > lowest ? (local < highest ? local : highest) : lowest;
+    const double low = lowest * quantum;
+    const double high = 0x1.cp30 * quantum;
+    return local > low ? (local < high ? local : high) : low;
   }
 
   bool operator==(const FixedPoint& b) const { return origin == b.origin && quantum == b.quantum; }

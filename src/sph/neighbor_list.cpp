@@ -73,8 +73,10 @@ struct Candidates {
 
   void make_room(std::size_t n) {
     if (n <= offset.size()) return;
-    for (auto& column : x) column.resize(2 * n);
-    offset.resize(2 * n);
+    // Enough for most searches at once: to grow step by step took a tenth of their time.
+    const std::size_t room = std::max(2 * n, std::size_t{2048});
+    for (auto& column : x) column.resize(room);
+    offset.resize(room);
   }
 };
 
@@ -190,11 +192,22 @@ void NeighborList::build(std::span<const Vec<Dim>> targets, const CellGrid<Dim>&
 }
 
 void NeighborList::count_pairs() {
-  active_ = 0;
-  pairs_ = 0;
-  for (const Block& block : blocks()) {
-    active_ += static_cast<Index>(block.size());
-    for (const std::uint32_t count : block.count) pairs_ += count;
+  constexpr int some_blocks = 16;
+  const auto n = static_cast<Index>(block_count_);
+  std::vector<Count> parts(static_cast<std::size_t>((n + some_blocks - 1) / some_blocks));
+  parallel_blocks(n, some_blocks, [&](Index first, Index last, Index part) {
+    Count sum;
+    for (Index b = first; b < last; ++b) {
+      const Block& block = blocks_[static_cast<std::size_t>(b)];
+      sum.active += static_cast<Index>(block.size());
+      for (const std::uint32_t count : block.count) sum.pairs += count;
+    }
+    parts[static_cast<std::size_t>(part)] = sum;
+  });
+  count_ = {};
+  for (const Count& part : parts) {
+    count_.active += part.active;
+    count_.pairs += part.pairs;
   }
 }
 

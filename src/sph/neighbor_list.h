@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/aligned.h"
+#include "core/parallel.h"
 #include "core/types.h"
 #include "sph/cell_grid.h"
 
@@ -44,8 +45,8 @@ class NeighborList {
   void build(std::span<const Vec<Dim>> targets, const CellGrid<Dim>& sources, double radius,
              Pairing pairing);
 
-  /// Keeps the pairs (i, j) for which keep(i, j) holds; targets that have none left are walked as
-  /// before.
+  /// Keeps the pairs (i, j) for which keep(i, j) holds, asked from all threads; targets that have
+  /// none left are walked as before.
   template <class F>
   void filter(F&& keep);
 
@@ -54,8 +55,8 @@ class NeighborList {
 
   Index target_count() const { return targets_; }  ///< size of the target set
   Index source_count() const { return sources_; }  ///< size of the source set
-  Index active() const { return active_; }         ///< walked targets
-  Index pairs() const { return pairs_; }           ///< directed pairs, without padding
+  Index active() const { return count_.active; }   ///< walked targets
+  Index pairs() const { return count_.pairs; }     ///< directed pairs, without padding
   std::size_t bytes() const;                       ///< memory in use
 
   /// Calls f(i, j) for every pair, one thread, in order of i: for tests and rare uses.
@@ -69,21 +70,23 @@ class NeighborList {
   }
 
  private:
+  struct Count {
+    Index active = 0, pairs = 0;
+  };
   void count_pairs();
 
   std::vector<Block> blocks_;
   std::size_t block_count_ = 0;
   Index targets_ = 0;
   Index sources_ = 0;
-  Index active_ = 0;
-  Index pairs_ = 0;
+  Count count_;
 };
 
 template <class F>
 void NeighborList::filter(F&& keep) {
   const auto null_offset = static_cast<std::uint32_t>(sources_ * 8);
-  for (std::size_t b = 0; b < block_count_; ++b) {
-    Block& block = blocks_[b];
+  parallel_blocks(static_cast<Index>(block_count_), 1, [&](Index b, Index, Index) {
+    Block& block = blocks_[static_cast<std::size_t>(b)];
     for (std::size_t k = 0; k < block.size(); ++k) {
       std::uint32_t* entry = block.entries.data() + block.begin[k];
       std::uint32_t kept = 0;
@@ -93,7 +96,7 @@ void NeighborList::filter(F&& keep) {
       for (std::uint32_t e = kept; e < block.count[k]; ++e) entry[e] = null_offset;
       block.count[k] = kept;
     }
-  }
+  });
   count_pairs();
 }
 

@@ -17,6 +17,11 @@ std::span<const Vec<Dim>> places_of(const ParticleSet<Dim>& set) {
   return {x.data(), static_cast<std::size_t>(x.size())};
 }
 
+template <int Dim>
+std::span<const Id> ids_of(const ParticleSet<Dim>& set) {
+  return {set.ids().data(), static_cast<std::size_t>(set.ids().size())};
+}
+
 }  // namespace
 
 template <int Dim>
@@ -162,7 +167,7 @@ void World<Dim>::arrange_solids(ParticleSet<Dim>& set) {
     const auto places = [&] {
       return std::span<const Vec<Dim>>(x.data(), static_cast<std::size_t>(x.size()));
     };
-    rest.build(places(), frame_, 2 * set.smoothing_length());
+    rest.build(places(), frame_, 2 * set.smoothing_length(), ids_of(set));
     set.permute(rest.order());
     rest.set_sorted();
     for (auto& [key, record] : records_) {
@@ -177,14 +182,14 @@ void World<Dim>::arrange_solids(ParticleSet<Dim>& set) {
           [&](Index i, Index j) { return part[i] == part[j] && !is_rigid(part[i]); });
     }
   }
-  grids_[set.name()].build(places_of(set), frame_, reach());
+  grids_[set.name()].build(places_of(set), frame_, reach(), ids_of(set));
 }
 
-// By the cells of the places `at`; makes room in the records.
+// By the cells of the places `at`, then by id; makes room in the records.
 template <int Dim>
 void World<Dim>::sort(ParticleSet<Dim>& set, std::span<const Vec<Dim>> at) {
   CellGrid<Dim>& grid = grids_[set.name()];
-  grid.build(at, frame_, reach());
+  grid.build(at, frame_, reach(), ids_of(set));
   set.permute(grid.order());
   grid.set_sorted();
   for (auto& [key, record] : records_) {
