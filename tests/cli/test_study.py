@@ -127,7 +127,7 @@ class Compare(ProgramTest):
         self.assertTrue(result["pass"])
         self.assertEqual({d["difference"] for d in result["differences"]}, {0})
         kinds = {d["kind"] for d in result["differences"]}
-        self.assertGreaterEqual(kinds, {"status", "steps", "probe", "particles", "places", "field", "ledger", "result"})
+        self.assertGreaterEqual(kinds, {"status", "steps", "probe", "particles", "positions", "field", "ledger", "result"})
 
     def test_other_gravity_is_found_and_the_worst_comes_first(self):
         said = self.compare("c", "a", expected=4)
@@ -141,7 +141,7 @@ class Compare(ProgramTest):
         self.compare("a", "base.json", "--update")
         self.compare("b", "base.json")
         self.compare("c", "base.json", expected=4)
-        self.write("wide.yaml", "probes: 1\nfields: 2\nledger: 1\nresults: 1\nsteps: 1\nplaces: 1\nrules: [{name: probe energy.total, tolerance: 100}]\n")
+        self.write("wide.yaml", "probes: 1\nfields: 2\nledger: 1\nresults: 1\nsteps: 1\npositions: 1\nrules: [{name: probe energy.total, tolerance: 100}]\n")
         self.compare("c", "base.json", "--tolerances", "wide.yaml")
         self.write("wide.yaml", "probs: 1\n")
         self.compare("c", "base.json", "--tolerances", "wide.yaml", expected=2)
