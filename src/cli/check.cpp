@@ -13,7 +13,6 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "run/forecast.h"
-#include "run/recorder.h"
 #include "run/relaxation_report.h"
 #include "run/thread_count.h"
 #include "run/wishes.h"
@@ -114,13 +113,8 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
   if (!found.items().empty()) std::cerr << found.render();
   if (!preview.empty()) std::cerr << fmt::format("{}: {}\n", printable(options.preview), preview);
   World<Dim>& world = *scene.world;
-  std::vector<std::string> names;
-  for (const auto& set : world.sets()) names.push_back(set->name());
-  Index moving = 0;
-  for (const auto& set : world.sets())
-    if (set->phase() != "wall") moving += set->size();
-  set_threads(sensible_threads(moving, options.threads));
-  const std::vector<Wish> wishes = wishes_of(model, names);
+  set_threads(sensible_threads(moving_particles(world), options.threads));
+  const std::vector<Wish> wishes = wishes_of(world);
   Plan<Dim> plan(world, wishes);
   world.rearrange();
 

@@ -68,9 +68,7 @@ struct CoarseCopy {
 
   CoarseCopy(const Model& original, double wanted)
       : model(coarse(original, wanted)), scene(build_scene<Dim>(model, found, Filling::draft)) {
-    std::vector<std::string> names;
-    for (const auto& set : scene.world->sets()) names.push_back(set->name());
-    plan = std::make_unique<Plan<Dim>>(*scene.world, wishes_of(model, names));
+    plan = std::make_unique<Plan<Dim>>(*scene.world, wishes_of(*scene.world));
     scene.world->rearrange();
   }
 

@@ -31,6 +31,7 @@ class Keeper {
   /// Writes one now, after the guard has checked the whole state. Throws UnstableError, IoError.
   void keep(double wall_seconds);
 
+  double wall_before() const { return wall_before_; }  ///< s
   double last_seconds() const { return last_seconds_; }
   double seconds() const { return seconds_; }
   long count() const { return count_; }

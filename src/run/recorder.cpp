@@ -13,6 +13,7 @@
 #include "probes/solid_scene.h"
 #include "run/boundary_mesh.h"
 #include "run/set_frame.h"
+#include "run/thread_count.h"
 #include "run/wishes.h"
 #include "scene/build.h"
 #include "scene/world_view.h"
@@ -238,16 +239,14 @@ void Recorder<Dim>::sample_run(double wall_seconds) {
   const Totals t = totals();
   if (!first_) first_ = t;
   latest_ = t;
-  Index particles = 0, lost = 0;
-  for (const auto& set : world_.sets())
-    if (set->phase() != "wall") particles += set->size();
+  Index lost = 0;
   for (const auto& [name, count] : world_.lost()) lost += count;
   const Clock& c = world_.clock;
   const double row[] = {static_cast<double>(c.advection_steps),
                         static_cast<double>(c.acoustic_steps),
                         c.dt_advection,
                         c.dt_acoustic,
-                        static_cast<double>(particles),
+                        static_cast<double>(moving_particles(world_)),
                         static_cast<double>(lost),
                         t.max_speed,
                         t.min_density,

@@ -15,4 +15,12 @@ std::vector<std::string> usual_fields(const std::string& set, bool mixed);
 /// Fields requested by the deck's probes and frames, with who requests them.
 std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& sets);
 
+/// The same for the sets of a world.
+template <int Dim>
+std::vector<Wish> wishes_of(const World<Dim>& world) {
+  std::vector<std::string> names;
+  for (const auto& set : world.sets()) names.push_back(set->name());
+  return wishes_of(world.model(), names);
+}
+
 }  // namespace sphgeo
