@@ -66,9 +66,8 @@ void print_costs(const Summary& summary) {
 void print_end(const RunResult& run) {
   const Summary& summary = run.summary;
   for (const auto& [name, count] : run.lost)
-    if (count > 0)
-      std::cerr << fmt::format("warning: {} particles of '{}' left the domain and were removed\n",
-                               count, name);
+    std::cerr << fmt::format("warning: {} particles of '{}' left the domain and were removed\n",
+                             count, name);
   if (!summary.expect.empty() && summary.status != "stopped")
     std::cout << render_expectations(summary.expect);
   if (summary.status == "stopped")

@@ -88,7 +88,8 @@ class DeckRun {
     summary.deck = settings_.deck;
     summary.disk_bytes = folder_bytes(settings_.folder);
     write_summary(folder.summary(), summary);
-    result.lost.assign(world.lost().begin(), world.lost().end());
+    for (const auto& [set, count] : world.lost())
+      if (count > 0) result.lost.emplace_back(set, count);
     return result;
   }
 

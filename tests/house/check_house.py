@@ -24,6 +24,9 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"')
 REGISTERS = re.compile(r"^\s*(?:static |inline )*const(?:expr)? Register\w*\s*<", re.MULTILINE)
 REGISTERED = re.compile(r'\bRegister\w*\s*<[^;"]*>\s*\w*\s*[({]\s*"([^"]+)"'
                         r'|\bEffectInfo\s+info\(\)\s*\{\s*return\s*(?:EffectInfo\s*)?\{\s*"([^"]+)"')
+# Writing to a standard stream, or ending the program.
+PRINTS = re.compile(r"\bstd::(?:cout|cerr|clog|exit|quick_exit|abort|terminate)\b"
+                    r"|(?<![\w.>:])(?:std::)?(?:printf|puts|exit|_exit)\s*\(")
 UNFINISHED = re.compile(r"\b(" + "|".join(["TO" + "DO", "FIX" + "ME", "X" * 3, "HA" + "CK"]) + r")\b")
 
 
@@ -103,6 +106,18 @@ def check_texts(root):
                     yield f"{path}:{number}: a word that marks an unfinished part"
 
 
+def check_prints(root):
+    """Only cli/ prints and ends the program: the other rooms return, throw, or tell an observer."""
+    src = root / "src"
+    for path in code_files(src):
+        room = path.relative_to(src).parts[0]
+        if room in ("cli", "main.cpp"):
+            continue
+        for number, line in enumerate(lines_of(path), 1):
+            if PRINTS.search(line.split("//")[0]):
+                yield f"{path}:{number}: only cli/ prints and ends the program"
+
+
 def check_names(root):
     """A file that registers a type carries its name: one name everywhere."""
     for room in PLUGIN_ROOMS:
@@ -137,7 +152,7 @@ def check_tests(root):
 
 
 def findings(root):
-    for check in (check_includes, check_texts, check_names, check_types, check_tests):
+    for check in (check_includes, check_texts, check_prints, check_names, check_types, check_tests):
         yield from check(root)
 
 

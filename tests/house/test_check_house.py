@@ -71,6 +71,13 @@ class HouseRules(unittest.TestCase):
         self.expect_one("macro", src__core__a_dot_cpp="# define A 1\n")
         self.expect_one("unfinished", src__core__a_dot_cpp="// " + "TO" + "DO: later\n")
 
+    def test_prints(self):
+        for breach in ("std::cerr << 1;", "std::cout << 1;", "std::exit(1);", "exit(1);", 'printf("a");'):
+            self.expect_one("only cli/ prints", src__run__a_dot_cpp=breach + "\n")
+        self.assertEqual(self.found(src__cli__a_dot_cpp="std::cerr << 1;\n",
+                                    src__main_dot_cpp="std::cout << 1;\n",
+                                    src__run__a_dot_cpp="// no std::cerr\nint a = run.exit(1);\n"), [])
+
     def test_names(self):
         box = 'static const Register<Shape, Box> registered{"box"};\n'
         drag = 'EffectInfo info() { return {"drag"}; }\nconst RegisterEffect<Drag> registered;\n'
