@@ -1,13 +1,13 @@
 #include "run/relax_deck.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "core/version.h"
 #include "geometry/mesh.h"
 #include "output/pvd.h"
@@ -141,8 +141,7 @@ RelaxResult relax_deck(const Model& model, const RunSettings& settings, RunObser
   summary.particles = {{"water", water->accepted}};
   summary.memory_peak_bytes = peak_memory_bytes();
   summary.disk_bytes = folder_bytes(settings.folder);
-  summary.wall_s =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - settings.start).count();
+  summary.wall_s = seconds_since(settings.start);
   nlohmann::ordered_json j = to_json(summary);
   j["relaxation"] = report_of(model, *water);
   write_file_atomically(

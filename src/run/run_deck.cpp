@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "run/forecast.h"
 #include "run/keeper.h"
 #include "run/recorder.h"
@@ -95,10 +96,7 @@ class DeckRun {
 
  private:
   /// Wall time so far, s.
-  double wall() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - settings_.start)
-        .count();
-  }
+  double wall() const { return seconds_since(settings_.start); }
 
   Scene<Dim> make_scene(const StateSource* resumed) {
     Diagnostics found = model_.warnings;

@@ -14,7 +14,7 @@ namespace {
 
 // Mean length of a number and its comma in a CSV file, and the columns of run.csv.
 constexpr double cell_bytes = 19;
-constexpr double run_columns = 18;
+constexpr double run_csv_columns = 18;
 
 // The text of a frame's file.
 constexpr double head_bytes = 2000;
@@ -74,7 +74,7 @@ RunOutput run_output(const World<Dim>& world, const std::vector<Wish>& wishes, d
   RunOutput out;
   out.frames = count_of_every(model.frame_interval(), model.end_time, steps);
   const double rows = count_of_every(model.run_interval(), model.end_time, steps);
-  double cells = rows * run_columns;
+  double cells = rows * run_csv_columns;
   out.observations = std::max(out.frames, rows);
   for (const auto& spec : model.probes) {
     const double n = count_of_every(model.probe_interval(*spec), model.end_time, steps);
