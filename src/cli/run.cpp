@@ -32,7 +32,7 @@ class Terminal final : public RunObserver {
     requests_.emplace(folder.stop_file(), options_.limits);
   }
   void resumes(double time, Index steps, const std::string& checkpoint) override {
-    std::cerr << fmt::format("going on from t = {:.6g} s, advection step {} ({})\n", time, steps,
+    std::cerr << fmt::format("continuing from t = {:.6g} s, advection step {} ({})\n", time, steps,
                              printable(checkpoint));
   }
   void progress(const ProgressState& state) override { progress_.update(state); }
@@ -72,17 +72,17 @@ void print_end(const RunResult& run) {
     std::cout << render_expectations(summary.expect);
   if (summary.status == "stopped")
     std::cerr << fmt::format(
-        "stopped at t = {:.6g} s: {}; the same command with --resume goes on\n", summary.time_s,
-        summary.message);
+        "stopped at t = {:.6g} s: {}; the same command with --resume continues the run\n",
+        summary.time_s, summary.message);
   else if (!summary.message.empty())
     std::cerr << "error: " << printable(summary.message, "\n") << "\n"
-              << (summary.checkpoint.count > 0
-                      ? "the last checkpoint is sound: " + printable(run.folder.checkpoint()) + "\n"
-                      : "");
+              << (summary.checkpoint.count > 0 ? "the last checkpoint is intact: " +
+                                                     printable(run.folder.checkpoint()) + "\n"
+                                               : "");
 }
 
-/// Writes the page, and returns the exit code. It comes last: whatever goes wrong with it, the
-/// results are there, and the page can be made again from them.
+/// Writes the page, and returns the exit code. The page is written last: if it fails, the results
+/// are complete and the page can be made from them.
 int write_page(const RunResult& run) {
   const int code = run.summary.exit_code;
   const std::string& folder = run.folder.path();
@@ -90,7 +90,7 @@ int write_page(const RunResult& run) {
     write_report({folder}, run.folder.report());
   } catch (const std::exception& e) {
     std::cerr << "warning: there is no report.html: " << printable(e.what()) << "; 'sphgeo report "
-              << printable(folder) << "' makes it again\n";
+              << printable(folder) << "' writes it again\n";
     if (code == 0 && dynamic_cast<const IoError*>(&e)) return static_cast<int>(ExitCode::io);
   }
   return code;

@@ -102,10 +102,8 @@ RelaxResult relax_deck(const Model& model, const RunSettings& settings, RunObser
   Diagnostics found = model.warnings;
   const std::optional<PoreBodies> pores = pore_bodies(model);
   if (!pores)
-    throw Error(
-        ExitCode::usage,
-        settings.deck +
-            ": no water of this deck starts in the pores of soil: there is nothing to relax");
+    throw Error(ExitCode::usage,
+                settings.deck + ": the deck has no pore water at t = 0: there is nothing to relax");
   const FolderLock lock(settings.folder);
   const RunFolder folder(settings.folder, settings.existing);
   if (settings.threads > 0) set_threads(settings.threads);

@@ -6,10 +6,10 @@
 
 namespace sphgeo {
 
-/// What came of a relaxation.
+/// The result of a relaxation.
 struct RelaxResult {
   PoreWater water;
-  Summary summary;  ///< as it was written to the folder, which also tells of the relaxation
+  Summary summary;  ///< as in summary.json, which also has the measures of the relaxation
 };
 
 /// Relaxes the water in the pores of soil, whatever file the deck names, and writes it to the

@@ -22,7 +22,7 @@
 namespace sphgeo {
 namespace {
 
-/// What a resumed run finds in its folder: a checkpoint, or nothing to go on from.
+/// What a resumed run finds in its folder: a checkpoint, or nothing to continue from.
 FoundCheckpoint checkpoint_of(const Model& model, const RunSettings& settings,
                               RunObserver& observer) {
   const std::string& folder = settings.folder;
@@ -52,7 +52,7 @@ class DeckRun {
     const std::uint64_t base = resident_memory();
     Scene<Dim> scene = make_scene(resumed);
     World<Dim>& world = *scene.world;
-    // Without a checkpoint, what a resumed run finds in its folder is of no use to it.
+    // Without a checkpoint, the contents of the folder cannot be used by a resumed run.
     const RunFolder folder(settings_.folder,
                            settings_.existing == ExistingResults::resume && !resumed
                                ? ExistingResults::overwrite
@@ -109,7 +109,7 @@ class DeckRun {
     return scene;
   }
 
-  /// Takes the steps until the end, or until somebody ends them.
+  /// Advances to the end time, or until the guard or the observer stops the run.
   std::optional<UnstableError> step(const RunParts<Dim>& parts, Keeper<Dim>& keeper,
                                     RunForecast<Dim>& forecast) {
     World<Dim>& world = parts.world;
@@ -130,8 +130,7 @@ class DeckRun {
     double asked_at = wall(), longest_wait = 0;  // s
     const auto ask = [&](double now, std::optional<long> steps) {
       longest_wait = std::max(longest_wait, now - std::exchange(asked_at, now));
-      // What ending takes: one more wait, and the checkpoint (an unknown one is guessed to be
-      // slow).
+      // Time to stop: one more step, and the checkpoint (of unknown duration: assumed to be slow).
       const double reserve =
           longest_wait + (keeper.count() > 0 ? keeper.last_seconds()
                                              : 1e-7 * static_cast<double>(world.bytes()) / 100);

@@ -21,7 +21,7 @@ namespace sphgeo {
 struct RunSettings {
   std::string deck;    ///< the path of the deck, for the summary
   std::string folder;  ///< of the results; made when it is missing
-  /// `resume` goes on from the checkpoint in the folder, and starts anew when there is none.
+  /// `resume` continues from the checkpoint in the folder, and starts anew when there is none.
   ExistingResults existing = ExistingResults::refuse;
   int threads = 0;      ///< 0: a sensible number for the scene
   bool verify = false;  ///< a missed `expect` makes the exit code of the summary `mismatch`
@@ -29,10 +29,10 @@ struct RunSettings {
   std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();
 };
 
-/// How far a run has come when it asks whether to go on; all of it in this process.
+/// The progress of a run in this process, when it asks whether to continue.
 struct RunPosition {
   double wall_seconds = 0;
-  double reserve_seconds = 0;           ///< wall time that ending takes, checkpoint included
+  double reserve_seconds = 0;           ///< wall time to stop, checkpoint included
   std::optional<long> advection_steps;  ///< known between two of them only
   long acoustic_steps = 0;
 };
@@ -48,21 +48,22 @@ class RunObserver {
 
   /// Findings about the deck that are no errors; not called when there are none.
   virtual void findings(const Diagnostics&) {}
-  /// Something went wrong that the run can do without, as half a sentence.
+  /// A problem that does not stop the run, as half a sentence.
   virtual void warning(const std::string&) {}
   /// How the scene was made, as half a sentence.
   virtual void note(const std::string&) {}
-  /// The scene is there and the folder is this run's own: from now on it can stop and be resumed.
+  /// The scene is built and the folder prepared: from now on the run can be stopped and resumed.
   virtual void begins(const RunFolder&) {}
-  /// The run goes on from a checkpoint, at a time (s) and a number of advection steps.
+  /// The run continues from a checkpoint, at a time (s) and a number of advection steps.
   virtual void resumes(double /*time*/, Index /*steps*/, const std::string& /*checkpoint*/) {}
   /// At every safe point.
   virtual void progress(const ProgressState&) {}
-  /// Why to end now, before every acoustic step; "" to go on. The run keeps a checkpoint and ends.
+  /// Why to end now, before every acoustic step; "" to continue. The run writes a checkpoint and
+  /// ends.
   virtual std::string stop_reason(const RunPosition&) { return ""; }
 };
 
-/// What came of a run. Other runs stay out of the folder for as long as this lives.
+/// The result of a run. The folder is locked against other runs during its lifetime.
 struct RunResult {
   std::unique_ptr<FolderLock> lock;
   RunFolder folder;

@@ -62,7 +62,7 @@ void summarize(const Model& model, const RunParts<Dim>& parts, const Keeper<Dim>
   summary.title = model.title;
   summary.deck_hash = deck_hash(model);
   summary.dimension = Dim;
-  // As they are now: what a run began with is not known to one that goes on.
+  // As they are now: the settings at the start are not known to a resumed run.
   for (const auto& set : world.sets()) summary.particles.emplace_back(set->name(), set->size());
   summary.threads = threads();
   summary.advection_steps = world.clock.advection_steps;

@@ -1,5 +1,5 @@
 #pragma once
-// What a run came to, for summary.json.
+// The results of a run, for summary.json.
 
 #include <optional>
 #include <string>
