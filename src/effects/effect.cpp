@@ -40,7 +40,7 @@ std::vector<EffectRegistry::Entry>& EffectRegistry::entries() {
 }
 
 const std::vector<EffectRegistry::Entry>& EffectRegistry::all() {
-  // Registration order is the link order, which is nobody's business: sort once, by name.
+  // Registration order is the link order; sorted once by name to be independent of it.
   static const std::vector<Entry>& sorted = []() -> std::vector<Entry>& {
     auto& list = entries();
     std::sort(list.begin(), list.end(),

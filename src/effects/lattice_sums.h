@@ -1,5 +1,5 @@
 #pragma once
-// What the kernel's sums give on a perfect lattice, where the integrals they stand for give 1.
+// Kernel sums on a perfect lattice, where the integrals that they approximate are 1.
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,7 @@ namespace sphgeo {
 
 struct LatticeSums {
   double number;  ///< sum of W dp^Dim, the particle itself included
-  double
-      moment;  ///< minus the sum of x dW/dx dp^Dim: a linear field's gradient comes out this large
+  double moment;  ///< minus the sum of x dW/dx dp^Dim: the factor on the gradient of a linear field
 };
 
 /// Sums over a lattice of spacing dp [m].
@@ -31,7 +30,7 @@ LatticeSums lattice_sums(const Kernel<Dim>& kernel, double dp) {
 }
 
 /// The sums over a lattice whose volume per particle is dp^Dim / share, for any share in (0, 1]:
-/// water in soil is spread wider than the kernel was made for, and its sums are the larger for it
+/// water in soil has a larger spacing than the kernel is made for, and its sums are larger
 /// (in 2D for h = 1.8 dp: 1.002 at 1, 1.012 at 0.5, 1.11 at 0.2).
 template <int Dim>
 class SpreadLattice {
@@ -42,7 +41,7 @@ class SpreadLattice {
   }
   LatticeSums operator()(double share) const {
     const double s = std::clamp((share - least) / (1 - least), 0.0, 1.0) * parts;
-    // A share that is no number gives sums that are none, for the guard to find.
+    // A share that is not a number gives sums that are not numbers, which the guard detects.
     const int k = s >= 0 ? std::min(static_cast<int>(s), parts - 1) : 0;
     return {at_[k].number + (s - k) * (at_[k + 1].number - at_[k].number),
             at_[k].moment + (s - k) * (at_[k + 1].moment - at_[k].moment)};

@@ -10,7 +10,7 @@ class RigidPredict final : public Effect<Dim> {
  public:
   static EffectInfo info() {
     return {"rigid_predict", Stage::solid_predict, "Eq. 99",
-            "places of rigid solids at the middle of their step", false};
+            "positions of rigid solids at the middle of their step", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     return bind_solids<RigidPredict>(world, true);

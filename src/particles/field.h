@@ -23,7 +23,7 @@ enum class Lifetime { state, reference, derived };
 /// What the values of a field are; a tensor is symmetric, with 6 components in every dimension.
 enum class FieldType { scalar, vector, tensor, tag, identity };
 
-/// The one description of a field: its name stands in decks, frames, plans and error texts.
+/// Description of a field; its name is used in decks, frames, plans and error texts.
 struct FieldSpec {
   const char* name;
   FieldType type;
@@ -40,13 +40,12 @@ class FieldBase {
   const FieldSpec& spec() const { return *spec_; }
   virtual void resize(Index n) = 0;
   /// New element k is old element order[k]; order may be shorter than the field. `spare` is a field
-  /// of the same type: it lends its memory, and what it holds afterwards is rubbish.
+  /// of the same type: its memory is used, and its values are undefined afterwards.
   virtual void permute(std::span<const std::uint32_t> order, FieldBase& spare) = 0;
   virtual std::size_t bytes() const = 0;
   /// Memory of the values alone, as a checkpoint holds them.
   virtual std::size_t value_bytes() const = 0;
-  /// Hands over all values under this name, or takes them back for as many particles as the field
-  /// has.
+  /// Saves all values under this name, or loads them for the number of particles of the field.
   virtual void save(StateSink& sink, const std::string& name) const = 0;
   virtual void load(const StateSource& source, const std::string& name) = 0;
   /// The first particle whose value is not finite, or -1.

@@ -1,5 +1,5 @@
 #pragma once
-// Which points of the reference lattice become water particles: as many as the pores hold.
+// Selection of the points of the reference lattice that become water particles.
 
 #include <cstdint>
 #include <string>
@@ -13,7 +13,7 @@ namespace sphgeo {
 struct Candidate {
   Vec3 at;        ///< its centre, m
   double water;   ///< volume of water in it over dp^Dim, above 0, at most 1
-  bool near_cut;  ///< within reach of a cell that is not wholly filled with water
+  bool near_cut;  ///< within reach of a cell that is not completely filled with water
 };
 
 /// All cells of the lattice of a body (as fill_lattice places it) that hold water, x fastest. The
@@ -45,7 +45,7 @@ enum class Acceptance {
 std::vector<std::size_t> accept(const std::vector<Candidate>& all, Acceptance kind,
                                 std::uint64_t seed, double dp, int dim);
 
-/// Place of a cell on the Hilbert curve over a cube of 2^bits cells an edge.
+/// Position of a cell on the Hilbert curve over a cube of 2^bits cells per edge.
 std::uint64_t hilbert_index(const std::uint32_t* cell, int dim, int bits);
 
 }  // namespace sphgeo

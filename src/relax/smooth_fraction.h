@@ -1,5 +1,5 @@
 #pragma once
-// The water fraction as a run will see it: smoothed with the kernel of the water (Eq. 56).
+// The water fraction of the run: smoothed with the kernel of the water (Eq. 56).
 
 #include <vector>
 
@@ -7,10 +7,10 @@
 
 namespace sphgeo {
 
-/// Target water fraction averaged with the water's kernel over the water and the soil around; what
-/// lies beyond both, such as walls, takes no part, as the run completes its sums there. Tabulated
-/// on a grid of spacing dp, straight lines between. Water set out for the sharp fraction would find
-/// its volumes, and so its density, several percent off at every surface of soil.
+/// Target water fraction averaged with the water's kernel over the water and the soil around;
+/// regions beyond both, such as walls, are excluded, as the run completes its sums there. Tabulated
+/// on a grid of spacing dp, straight lines between. With the sharp fraction volumes and densities
+/// would be off by several percent at every surface of soil.
 class SmoothFraction {
  public:
   /// Around the box, for smoothing length h (m).

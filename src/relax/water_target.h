@@ -1,5 +1,5 @@
 #pragma once
-// How much of the space water may take at a place: the pores of the soil there, or all of it.
+// Volume fraction available to water at a position: the porosity of the soil there, or 1.
 
 #include <memory>
 #include <string>
@@ -49,7 +49,7 @@ class WaterTarget {
   /// planes.
   double mean_fraction(const Vec3& at, double edge) const;
 
-  /// Below this the pores hold too little water to be filled with particles.
+  /// Below this the porosity is too small for a filling with particles.
   static constexpr double smallest = 0.05;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// Watches a running scene and stops it when it has become unstable: with the effect, the particle,
-// the place, the time, and what to look for.
+// Monitors a running scene and stops it when it has become unstable, with effect, particle,
+// position, time and likely cause.
 
 #include <map>
 #include <string>
@@ -13,22 +13,22 @@
 
 namespace sphgeo {
 
-/// Checks: every acoustic step, the speed against the speed of sound (which a value that is no
-/// number anywhere in the sums reaches within the same step) and the size of the step and of the
+/// Checks: every acoustic step, the speed against the speed of sound (which a value that is not a
+/// number anywhere in the sums affects within the same step) and the size of the step and of the
 /// steps of solids in it; every advection step, all saved fields of sets that move for values that
 /// are not finite, the bounds that the effects declare (density, volume fraction), and lost
-/// particles; every 16th and before a checkpoint, also sets at rest (whose values nobody reads
-/// again) and particles that sit inside a wall. All throw UnstableError.
+/// particles; every 16th and before a checkpoint, also sets at rest (whose values are not read
+/// again) and particles inside a wall. All throw UnstableError.
 template <int Dim>
 class Guard {
  public:
   Guard(const World<Dim>& world, const Plan<Dim>& plan);
 
-  /// Before an acoustic step: the limits that the step rests on, and its size, s.
+  /// Before an acoustic step: the limits of the step, and its size, s.
   void before_step(const StepLimits& limits, double dt);
   /// After an advection step, before the rearrangement.
   void after_advection();
-  /// All of the state, whatever the turn: before a checkpoint.
+  /// All of the state, at any step: before a checkpoint.
   void check_all();
 
   /// Largest Mach number, smallest and largest density ratio ..., for the summary.

@@ -9,7 +9,7 @@
 namespace sphgeo {
 namespace {
 
-/// The larger of the sets that are no walls: what scratch and the like grow with.
+/// The largest set other than walls, with which scratch memory grows.
 template <int Dim>
 std::string main_set(const World<Dim>& world) {
   std::string name;
@@ -35,13 +35,13 @@ std::vector<MemoryShare> memory_shares(const World<Dim>& world, const Plan<Dim>&
     particles += static_cast<double>(s->size());
   }
   for (const auto& [key, list] : world.lists()) {
-    // Between two sets, pairs grow with the border, which the thinner set follows: walls have a
-    // thickness of a few spacings.
+    // Between two sets pairs grow with their interface, as does the thinner set: walls are a few
+    // spacings thick.
     const bool across = key.first != key.second && world.set(key.second).phase() == "wall";
     shares.push_back({"list", across ? key.second : key.first, static_cast<double>(list.bytes())});
   }
   for (const MemoryShare& s : shares) accounted += s.bytes;
-  // What is left are the records, alike for all particles.
+  // The rest are the records, equal for all particles.
   for (const auto& s : world.sets())
     if (particles > 0)
       shares.push_back(
@@ -85,7 +85,7 @@ double typical_speed(const World<Dim>& world, const SoundSpeed& sound) {
 
 template <int Dim>
 StepCounts expected_steps(World<Dim>& world, const Plan<Dim>& plan, double speed, double duration) {
-  // All particles rest but one of each set, for as long as the plan is asked.
+  // All particles but one of each set are at rest while the plan is evaluated.
   std::vector<std::vector<Vec<Dim>>> kept;
   for (const auto& s : world.sets()) {
     auto& v = s->vector(fields::velocity);

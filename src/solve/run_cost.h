@@ -1,6 +1,6 @@
 #pragma once
-// What a run will cost: memory by what it grows with, the number of steps, and the time of a step
-// measured on the run's own particles. No guess needs the results.
+// Cost of a run: memory by the set it grows with, the number of steps, and the time of a step
+// measured on the run's own particles, without results of the run.
 
 #include <chrono>
 #include <optional>
@@ -36,13 +36,12 @@ struct StepCounts {
   double advection = 0, acoustic = 0;
 };
 
-/// The largest speed of the particles to be expected on average over a run, m/s.
+/// The expected largest speed of the particles, on average over a run, m/s.
 template <int Dim>
 double typical_speed(const World<Dim>& world, const SoundSpeed& sound);
 
 /// Steps of both clocks through `duration` (s) when the fastest particle of every set moves at
-/// `speed` (m/s): the bounds are those of the plan itself. The world is left as it was, bit for
-/// bit.
+/// `speed` (m/s): the bounds are those of the plan itself. The world is not changed (bitwise).
 template <int Dim>
 StepCounts expected_steps(World<Dim>& world, const Plan<Dim>& plan, double speed, double duration);
 
@@ -53,8 +52,8 @@ struct StepCost {
   double of(const StepCounts& n) const { return n.advection * advection + n.acoustic * acoustic; }
 };
 
-/// Times advection steps from outside. The first one is left out, as it meets cold memory; of the
-/// others the mean counts, which on a busy machine holds the waiting that a run would meet too.
+/// Times advection steps. The first one is left out, as its memory is not in caches; the mean of
+/// the others includes the waiting on a busy machine, as a run does.
 template <int Dim>
 class StepTimer {
  public:
@@ -73,7 +72,7 @@ class StepTimer {
 
  private:
   using clock = std::chrono::steady_clock;
-  /// Seconds spent by the stepper on what comes once per advection step.
+  /// Seconds spent by the stepper once per advection step.
   double between() const;
 
   struct Sample {
@@ -89,8 +88,8 @@ class StepTimer {
   std::vector<Sample> samples_;
 };
 
-/// Real steps of the plan for about `seconds`, at most `most_steps` but at least 3. Moves the world
-/// on.
+/// Real steps of the plan for about `seconds`, at most `most_steps` but at least 3. Advances the
+/// world.
 template <int Dim>
 std::optional<StepCost> calibrate(World<Dim>& world, Plan<Dim>& plan, double seconds,
                                   double most_steps);

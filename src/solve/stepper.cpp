@@ -47,7 +47,7 @@ bool Stepper<Dim>::advance(const RunHooks& hooks) {
   while (left_ > 0) {  // line 14
     if (!hooks.before_acoustic_step()) return false;
     const StepLimits limits = plan_.limits();
-    // Line 15, with what is left divided evenly: no sliver of a step at the end.
+    // Line 15, with the remainder divided evenly: no very short step at the end.
     const double steps = std::max(1.0, std::ceil(left_ / limits.acoustic - 1e-9));
     const double dt = left_ / steps;
     guard_.before_step(limits, dt);
@@ -65,9 +65,8 @@ void Stepper<Dim>::acoustic_step(double dt, double solid_limit) {
   plan_.run(Stage::predict);  // Eq. 96
   plan_.run(Stage::force);    // Eq. 60
   plan_.run(Stage::kick);     // Eqs. 97, 98
-  // Algorithm 2 moves the solids last. Then water and soil would be compressed by the solids of the
-  // step before, and that delay feeds energy to whatever is lighter than they are (see
-  // light_solids.h).
+  // Algorithm 2 moves the solids last. Water and soil would then be compressed by the solids of the
+  // previous step, and this delay adds energy to lighter solids (see light_solids.h).
   if (solid_limit < std::numeric_limits<double>::infinity()) solid_steps(dt, solid_limit);
   plan_.run(Stage::rate);     // Eq. 58
   plan_.run(Stage::correct);  // Eq. 98

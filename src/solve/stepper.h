@@ -8,13 +8,13 @@
 
 namespace sphgeo {
 
-/// What happens beside the steps. It looks and keeps; it changes nothing.
+/// Hooks beside the steps, for output and checkpoints; they do not change the state.
 struct RunHooks {
   /// At the start and after every advection step, with lists and derived fields fresh. False: stop.
   std::function<bool()> at_safe_point;
-  /// Between an advection step and the rearrangement that follows it: what the sets hold now is all
-  /// that the rest of the run depends on. False: stop before the rearrangement, as a resumed run
-  /// begins with it.
+  /// Between an advection step and the rearrangement that follows it: the rest of the run depends
+  /// only on the present contents of the sets. False: stop before the rearrangement, as a resumed
+  /// run begins with it.
   std::function<bool()> before_rearranging = [] { return true; };
   /// Before an acoustic step: the run can be saved here too. False: stop within the advection step.
   std::function<bool()> before_acoustic_step = [] { return true; };
@@ -33,7 +33,7 @@ class Stepper {
   const Guard<Dim>& guard() const { return guard_; }
 
   /// The counters below and the guard's.
-  /// Within an advection step also what is left of it, and what its acoustic steps rest on:
+  /// Within an advection step also its remaining time, and the data of its acoustic steps:
   /// loading, after the world, rebuilds lists and records, and run() begins with the next acoustic
   /// step.
   void save(StateSink& sink) const;
@@ -41,7 +41,7 @@ class Stepper {
 
   double seconds_rearranging() const { return seconds_rearranging_; }
   long rearrangements() const { return rearrangements_; }
-  /// Particles times acoustic steps so far: the unit of work of the speed figures.
+  /// Particles times acoustic steps since t = 0: the unit of work of the speed figures.
   double particle_updates() const { return particle_updates_; }
 
  private:
@@ -54,7 +54,7 @@ class Stepper {
   World<Dim>& world_;
   Plan<Dim>& plan_;
   Guard<Dim> guard_;
-  double start_ = 0, left_ = 0;  ///< of the advection step: its begin, and what is to come of it,
+  double start_ = 0, left_ = 0;  ///< of the advection step: its start, and the remaining time,
                                  ///< s; 0 between two steps
   double seconds_rearranging_ = 0;
   double particle_updates_ = 0;

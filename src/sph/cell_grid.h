@@ -16,7 +16,7 @@ namespace sphgeo {
 /// cell. The cells are those of the frame: their edges and corners depend on the frame and on the
 /// reach alone, never on which particles the set holds, so two particles of one set stand in the
 /// same order in any part of it. The grid holds its own copy of the positions, in fixed point, so
-/// it answers for the moment of `build`.
+/// it describes the moment of `build`.
 template <int Dim>
 class CellGrid {
  public:
@@ -26,11 +26,11 @@ class CellGrid {
   void build(std::span<const Vec<Dim>> r, const FixedPoint<Dim>& frame, double reach,
              std::span<const Id> ids = {});
 
-  /// Particle at each place of the cell order: the permutation that sorts the set.
+  /// Particle at each position of the cell order: the permutation that sorts the set.
   std::span<const std::uint32_t> order() const { return {order_.data(), size_}; }
 
-  /// Says that the set has been reordered by order(): place k now holds particle k. Lists are built
-  /// fastest from sorted sets.
+  /// States that the set has been reordered by order(): position k now holds particle k. Lists are
+  /// built fastest from sorted sets.
   void set_sorted();
 
   Index size() const { return static_cast<Index>(size_); }
@@ -65,7 +65,7 @@ class CellGrid {
   /// where no point of the box can reach.
   template <class F>
   void for_each_row(const std::int32_t* lo, const std::int32_t* hi, double reach, F&& f) const {
-    // One quantum more than enough: rounding of cell edges can lose nobody.
+    // A margin of one quantum: rounding of cell edges cannot lose a particle.
     const double all = reach + 1.0;
     std::int64_t first[3] = {0, 0, 0}, last[3] = {0, 0, 0};
     for (int d = 1; d < Dim; ++d) {

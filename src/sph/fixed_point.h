@@ -11,9 +11,10 @@
 namespace sphgeo {
 
 /// Maps positions of one scene to integers in (0, 2^31): position = origin + quantum * integer. All
-/// sets that meet in a neighbor list use the same one. The box it is fitted to fills the middle
-/// half of the range, and positions are clamped half way to its ends: any two integers differ by
-/// less than 2^31, and the point 0, where null records sit, is out of reach of every particle.
+/// sets that are paired in a neighbor list use the same one. The box it is fitted to fills the
+/// middle half of the range, and positions are clamped half way to its ends: any two integers
+/// differ by less than 2^31, and the point 0, the position of null records, is out of reach of
+/// every particle.
 template <int Dim>
 struct FixedPoint {
   Vec<Dim> origin = Vec<Dim>::Zero();  ///< position of the integer 0 [m]
@@ -22,7 +23,7 @@ struct FixedPoint {
   /// Integers of positions are never below this.
   static constexpr double lowest = 0x1p28;
 
-  /// Fits the range to a box [m]; `support` is the largest reach of any kernel [m].
+  /// Fits the range to a box [m]; `support` is the largest kernel support [m].
   static FixedPoint fit(const Vec<Dim>& lo, const Vec<Dim>& hi, double support) {
     double span = std::max((hi - lo).maxCoeff(), 8.0 * support);
     if (!(span > 0.0) || !std::isfinite(span)) span = 1.0;
@@ -38,7 +39,7 @@ struct FixedPoint {
     return static_cast<std::int32_t>(to_local(x, k) * per_quantum + 0.5);
   }
 
-  /// A place that to_fixed maps to these integers.
+  /// A position that to_fixed maps to these integers.
   Vec<Dim> place_of(const std::int32_t (&fixed)[Dim]) const {
     Vec<Dim> at;
     for (int k = 0; k < Dim; ++k) at[k] = origin[k] + quantum * fixed[k];

@@ -15,7 +15,7 @@ struct Kernel {
 
   Kernel() = default;
   explicit Kernel(double smoothing_length) : h(smoothing_length) {
-    // The constants follow from unity of the kernel in one, two and three dimensions.
+    // The constants normalize the kernel in one, two and three dimensions.
     if constexpr (Dim == 1) factor = 3.0 / (4.0 * h);
     if constexpr (Dim == 2) factor = 7.0 / (4.0 * std::numbers::pi * h * h);
     if constexpr (Dim == 3) factor = 21.0 / (16.0 * std::numbers::pi * h * h * h);

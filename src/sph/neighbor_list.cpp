@@ -99,7 +99,7 @@ std::uint32_t* select_near(const Candidates<Dim>& candidates, const float* at, f
   return out;
 }
 
-// Gives back memory that the next search will not need either, if it is much; `used` entries are
+// Releases memory that the next search will not need either, if it is much; `used` entries are
 // kept.
 void fit(AlignedVector<std::uint32_t>& entries, std::size_t used, std::size_t needed) {
   if (entries.capacity() <= needed + needed / 8) return;
@@ -115,7 +115,7 @@ void search_block(std::span<const Vec<Dim>> targets, const CellGrid<Dim>& source
                   NeighborList::Block& block) {
   const FixedPoint<Dim>& frame = sources.frame();
   const auto null_offset = static_cast<std::uint32_t>(sources.size() * 8);
-  // Targets are searched in groups of neighbors in memory; a group fits a box of this size.
+  // Targets are searched in groups that are adjacent in memory; a group fits a box of this size.
   double box_size[3] = {scale.reach, scale.reach, scale.reach};
   box_size[0] *= 0.5;
   std::array<std::array<std::int32_t, Dim>, block_size> position;

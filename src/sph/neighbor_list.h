@@ -1,6 +1,5 @@
 #pragma once
-// Who is near whom: for each particle of a target set the particles of a source set within a
-// radius.
+// Neighbor lists: for each particle of a target set the particles of a source set within a radius.
 
 #include <cstdint>
 #include <span>
@@ -15,14 +14,14 @@ namespace sphgeo {
 
 /// Whether a list pairs a set with itself or with another set.
 enum class Pairing {
-  within,  ///< one set: nobody is his own neighbor; every particle is walked, even a lonely one
-  across   ///< two sets: only targets that have a neighbor are walked
+  within,  ///< one set: no self-pairs; every particle is visited, also isolated ones
+  across   ///< two sets: only targets that have a neighbor are visited
 };
 
 /// Flat lists of neighbors of a target set in a source set, exact at the time of building, in cell
-/// order of the source. Both directions agree: i sees j if and only if j sees i, also between
-/// lists built for the two directions of a pair of sets with the same radius and frame.
-/// Neighbors are stored as offsets of records, 8 j, and every target's list is filled up to
+/// order of the source. Both directions agree: j is a neighbor of i if and only if i is one of j,
+/// also between lists built for the two directions of a pair of sets with the same radius and
+/// frame. Neighbors are stored as offsets of records, 8 j, and every target's list is filled up to
 /// `padding` entries with the null record n.
 class NeighborList {
  public:

@@ -7,8 +7,7 @@
 namespace sphgeo {
 
 /// Height of the topmost surface on a vertical line [m]; empty when there is none. `filled` gives
-/// the kernel sum of volumes at a height, `top` and `bottom` bound the particles that the line can
-/// see.
+/// the kernel sum of volumes at a height, `top` and `bottom` bound the particles near the line.
 template <class Filled>
 std::optional<double> surface_height(double top, double bottom, double spacing, Filled&& filled) {
   // From the highest particle of the neighborhood down to the first half-filled kernel.
