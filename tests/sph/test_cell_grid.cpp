@@ -16,11 +16,11 @@ using namespace sphgeo;
 
 namespace {
 
-constexpr double reach = 0.1;
+constexpr double search_reach = 0.1;
 
 template <int Dim>
 FixedPoint<Dim> frame_of_size(double size) {
-  return FixedPoint<Dim>::fit(Vec<Dim>::Zero(), Vec<Dim>::Constant(size), reach);
+  return FixedPoint<Dim>::fit(Vec<Dim>::Zero(), Vec<Dim>::Constant(size), search_reach);
 }
 
 template <int Dim>
@@ -35,7 +35,7 @@ struct Particles {
   // Ids in the order of the grid.
   std::vector<Id> sorted(const FixedPoint<Dim>& frame) const {
     CellGrid<Dim> grid;
-    grid.build(r, frame, reach, id);
+    grid.build(r, frame, search_reach, id);
     std::vector<Id> ids;
     for (const std::uint32_t i : grid.order()) ids.push_back(id[i]);
     return ids;
@@ -113,7 +113,7 @@ TEST_SUITE("sph") {
   TEST_CASE("without ids particles of a cell stand in the order of indices") {
     std::vector<Vec<2>> r(1000, Vec<2>(0.501, 0.502));
     CellGrid<2> grid;
-    grid.build(r, frame_of_size<2>(1.0), reach);
+    grid.build(r, frame_of_size<2>(1.0), search_reach);
     CHECK(std::is_sorted(grid.order().begin(), grid.order().end()));
   }
 
@@ -130,7 +130,7 @@ TEST_SUITE("sph") {
     const auto frame = frame_of_size<3>(size);
     CHECK(p.shuffled(1).sorted(frame) == p.sorted(frame));
     CellGrid<3> grid;
-    grid.build(p.r, frame, reach, p.id);
+    grid.build(p.r, frame, search_reach, p.id);
     CHECK(grid.bytes() < 100 * static_cast<std::size_t>(n));
 
     // Rows of cells hold no more than the box that they are asked for, and a cell around it.
@@ -139,13 +139,14 @@ TEST_SUITE("sph") {
       std::int32_t x[3];
       for (int d = 0; d < 3; ++d) x[d] = frame.to_fixed(p.r[i][d], d);
       Index candidates = 0;
-      grid.for_each_row(x, x, reach * frame.per_quantum, [&](std::size_t begin, std::size_t end) {
-        candidates += static_cast<Index>(end - begin);
-      });
+      grid.for_each_row(x, x, search_reach * frame.per_quantum,
+                        [&](std::size_t begin, std::size_t end) {
+                          candidates += static_cast<Index>(end - begin);
+                        });
       most = std::max(most, candidates);
       Index near = 0, true_near = 0;
-      grid.for_each_in_reach(p.r[i], reach, [&](Index, double) { ++near; });
-      for (const Vec<3>& at : p.r) true_near += (at - p.r[i]).norm() < reach;
+      grid.for_each_in_reach(p.r[i], search_reach, [&](Index, double) { ++near; });
+      for (const Vec<3>& at : p.r) true_near += (at - p.r[i]).norm() < search_reach;
       CHECK(std::abs(near - true_near) <= 1);  // one may be at the very rim
       found += near;
     }
