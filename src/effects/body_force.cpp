@@ -1,5 +1,6 @@
 #include "core/parallel.h"
 #include "effects/effect.h"
+#include "sph/parameters.h"
 
 namespace sphgeo {
 namespace {
@@ -14,7 +15,7 @@ class BodyForce final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
-    if (!world.model().body_force)
+    if (!world.parameters().body_force)
       return {"the deck has no body_force; gravity comes with water_momentum"};
     return {std::make_unique<BodyForce>(), "the deck has a body_force"};
   }

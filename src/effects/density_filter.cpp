@@ -48,7 +48,7 @@ class DensityFilter final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
-    if (world.model().numerics.density_reinitialization != "shepard")
+    if (world.parameters().numerics.density_reinitialization != DensityReinitialization::shepard)
       return {"numerics.density_reinitialization is not shepard"};
     return {std::make_unique<DensityFilter>(world), "numerics.density_reinitialization is shepard"};
   }
@@ -67,7 +67,7 @@ class DensityFilter final : public Effect<Dim> {
 
   void apply(World<Dim>& world) override {
     using Matrix = Eigen::Matrix<double, Dim + 1, Dim + 1>;
-    const double h = water_->smoothing_length(), rho0 = water_->constant("density");
+    const double h = water_->smoothing_length(), rho0 = world.parameters().water.density;
     const FilterPair<Dim> pair{Kernel<Dim>(h), 1 / h};
     const auto& m = water_->scalar(fields::mass);
     auto& rho = water_->scalar(fields::density);

@@ -33,9 +33,9 @@ class Drag final : public Effect<Dim> {
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!has_pore_water(world)) return {"there is no water, or there is no soil"};
     std::string laws;
-    for (const SoilPart& p : SoilParts(world).of) {
-      if (!p.material || p.material->drag_law() == "none") continue;
-      const std::string law = p.material->drag_law();
+    for (const SoilPart& p : world.parameters().soil.of) {
+      if (p.drag == DragLaw::none) continue;
+      const std::string law = p.drag == DragLaw::darcy ? "darcy" : "ergun";
       if (laws.find(law) == std::string::npos) laws += (laws.empty() ? "" : " and ") + law;
     }
     if (laws.empty())
@@ -46,7 +46,7 @@ class Drag final : public Effect<Dim> {
   }
 
   explicit Drag(const World<Dim>& world)
-      : deformable_(SoilParts(world).deformable), moves_(soil_moves(world)) {}
+      : deformable_(world.parameters().soil.deformable), moves_(soil_moves(world)) {}
 
   std::string acts_on() const override {
     return deformable_ ? "water near soil, soil near water" : "water near soil";
@@ -95,7 +95,7 @@ class Drag final : public Effect<Dim> {
  private:
   // Where the other forces alone would bring the soil's velocity.
   void pack_soil(World<Dim>& world, double dt) {
-    const SoilParts parts(world);
+    const SoilParameters& parts = world.parameters().soil;
     const auto& v = soil_->vector(fields::velocity);
     const auto& part = soil_->tag(fields::part);
     const Field<Vec<Dim>>* a = deformable_ ? &soil_->vector(fields::acceleration_sum) : nullptr;
@@ -139,7 +139,7 @@ class Drag final : public Effect<Dim> {
   }
 
   void push_soil(World<Dim>& world) {
-    const SoilParts parts(world);
+    const SoilParameters& parts = world.parameters().soil;
     const auto& part = soil_->tag(fields::part);
     auto& a = soil_->vector(fields::acceleration_sum);
     auto& by_water = soil_->vector(fields::water_acceleration);

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "boundaries/exchange.h"
 #include "effects/effect.h"
+#include "sph/parameters.h"
 
 namespace sphgeo {
 
@@ -22,7 +22,7 @@ void let_in(World<Dim>& world, ParticleSet<Dim>& water, const std::string& bound
             const std::vector<Newcomer<Dim>>& newcomers, double pressure = 0) {
   if (newcomers.empty()) return;
   const Index first = water.size();
-  const double density = water.constant("density"), c = water.constant("sound_speed");
+  const double density = world.parameters().water.density, c = world.parameters().water.sound_speed;
   const double mass = density * std::pow(water.spacing(), Dim);
   double& next = world.kept("next_id/" + water.name());
   Exchanged<Dim>& book = world.exchanged(boundary);
@@ -48,16 +48,14 @@ void prepare_entry(World<Dim>& world, const ParticleSet<Dim>& water, const std::
   next = std::max(next, static_cast<double>(water.size()));
 }
 
-/// One instance of an effect for each boundary of type B, which its constructor takes; none without
-/// the sets that it needs.
-template <class B, template <int> class E, int Dim>
-Binding<Dim> bind_exchange(const World<Dim>& world, const std::string& what) {
+/// One instance of an effect for each of the boundaries, which its constructor takes.
+template <template <int> class E, int Dim, class B>
+Binding<Dim> bind_exchange(const std::vector<B>& boundaries, const std::string& what) {
   Binding<Dim> binding("there is no " + what);
-  for (const auto& boundary : world.model().boundaries)
-    if (const auto* spec = dynamic_cast<const B*>(boundary.get())) {
-      binding.effects.push_back(std::make_unique<E<Dim>>(*spec));
-      binding.because = "boundary '" + spec->name + "' is " + what;
-    }
+  for (const B& boundary : boundaries) {
+    binding.effects.push_back(std::make_unique<E<Dim>>(boundary));
+    binding.because = "boundary '" + boundary.name + "' is " + what;
+  }
   return binding;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "effects/effect.h"
+#include "sph/parameters.h"
 
 namespace sphgeo {
 namespace {
@@ -23,9 +24,7 @@ class IdleClock final : public Effect<Dim> {
   Needs needs() const override { return {}; }
   void apply(World<Dim>&) override {}
   void limit(const World<Dim>& world, StepLimits& limits) const override {
-    const Model& model = world.model();
-    double step = model.run_interval();
-    for (const auto& p : model.probes) step = std::min(step, model.probe_interval(*p));
+    const double step = world.parameters().shortest_interval;
     limits.advection = std::min(limits.advection, step);
     limits.lower_acoustic(step, "who wants to look");
   }

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "core/hash.h"
+#include "deck/expression.h"
 #include "effects/exchange.h"
 
 namespace sphgeo {
@@ -10,13 +11,13 @@ namespace {
 template <int Dim>
 class InletFlow final : public Effect<Dim> {
  public:
-  explicit InletFlow(const Inlet& inlet) : inlet_(inlet) {}
+  explicit InletFlow(const InletParameters& inlet) : inlet_(inlet) {}
   static EffectInfo info() {
     return {"inlet_flow", Stage::exchange, "5.1, 6.1",
             "layers of water that enter through an inlet", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    return bind_exchange<Inlet, InletFlow>(world, "an inlet");
+    return bind_exchange<InletFlow, Dim>(world.parameters().inlets, "an inlet");
   }
 
   std::string acts_on() const override { return "water, inlet '" + inlet_.name + "'"; }
@@ -29,7 +30,6 @@ class InletFlow final : public Effect<Dim> {
 
   void prepare(World<Dim>& world) override {
     water_ = &world.set("water");
-    layer_ = inlet_.layer(water_->spacing(), Dim);
     prepare_entry(world, *water_, inlet_.name);
     for (const char* name : {"way", "layers", "time"}) world.kept(key(name));
   }
@@ -40,13 +40,12 @@ class InletFlow final : public Effect<Dim> {
     const double begin = std::max(last, inlet_.from),
                  now = std::min(world.clock.time, inlet_.until.value_or(world.clock.time));
     last = std::max(last, world.clock.time);
-    const int across = inlet_.axis(Dim);
-    const double direction = inlet_.velocity_at(inlet_.from)[across] > 0 ? 1 : -1;
     if (world.clock.time < inlet_.from || now < begin) return;
     // The velocity at the middle of the interval is good to the second order; a step is a small
     // part of what it takes to change.
-    const Vec3 velocity = inlet_.velocity_at(0.5 * (begin + now));
-    const double dp = water_->spacing(), speed = std::max(0.0, direction * velocity[across]);
+    const Vec3 velocity = velocity_at(0.5 * (begin + now));
+    const double dp = water_->spacing(),
+                 speed = std::max(0.0, inlet_.direction * velocity[inlet_.across]);
     way += speed * (now - begin);
     std::vector<Newcomer<Dim>> newcomers;
     // A layer enters when half of it has come through, so that what has entered is the way to half
@@ -55,24 +54,26 @@ class InletFlow final : public Effect<Dim> {
       // Since it came through; no longer ago than the last step.
       const double ago = speed > 0 ? std::min((way - (layers + 0.5) * dp) / speed, now - begin) : 0;
       const Vec3 ahead = ago * velocity;
-      for (std::size_t k = 0; k < layer_.size(); ++k) {
-        const auto number = static_cast<std::uint64_t>(layers) * layer_.size() + k;
-        if (inlet_.share < 1 &&
-            random_uniform(static_cast<std::uint64_t>(inlet_.seed), number) >= inlet_.share)
-          continue;
-        newcomers.push_back({to_scene<Dim>(layer_[k] + ahead), to_scene<Dim>(velocity)});
+      for (std::size_t k = 0; k < inlet_.layer.size(); ++k) {
+        const auto number = static_cast<std::uint64_t>(layers) * inlet_.layer.size() + k;
+        if (inlet_.share < 1 && random_uniform(inlet_.seed, number) >= inlet_.share) continue;
+        newcomers.push_back({to_scene<Dim>(inlet_.layer[k] + ahead), to_scene<Dim>(velocity)});
       }
     }
     let_in(world, *water_, inlet_.name, newcomers);
   }
 
-  std::size_t bytes() const override { return layer_.size() * sizeof(Vec3); }
+  std::size_t bytes() const override { return inlet_.layer.size() * sizeof(Vec3); }
 
  private:
+  Vec3 velocity_at(double time) const {
+    const VectorFormula& v = *inlet_.velocity;
+    const Vec3 nowhere = Vec3::Zero();
+    return {v[0](nowhere, time), v[1](nowhere, time), v[2](nowhere, time)};
+  }
   std::string key(const std::string& name) const { return "inlet/" + inlet_.name + "/" + name; }
 
-  const Inlet& inlet_;
-  std::vector<Vec3> layer_;
+  const InletParameters& inlet_;
   ParticleSet<Dim>* water_ = nullptr;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "deck/interfaces.h"
 #include "effects/soil_phase.h"
 #include "effects/solid_phase.h"
 
@@ -32,7 +33,7 @@ namespace sphgeo {
 template <int Dim>
 double step_beside_light_solids(const World<Dim>& world, const std::string& set_name) {
   const ParticleSet<Dim>& set = world.set(set_name);
-  const SolidParts parts(world);
+  const SolidParameters& parts = world.parameters().solids;
   const auto& part = set.tag(fields::part);
   const auto& reference = set.vector(fields::reference_position);
   struct Medium {
@@ -40,11 +41,11 @@ double step_beside_light_solids(const World<Dim>& world, const std::string& set_
   };
   std::vector<Medium> media;
   if (const ParticleSet<Dim>* water = world.find("water")) {
-    const WaterConstants w = WaterConstants::of(world);
+    const WaterParameters& w = world.parameters().water;
     media.push_back({w.density, water->spacing(), w.sound_speed});
   }
   if (const ParticleSet<Dim>* soil = world.find("soil")) {
-    const SoilParts soils(world);
+    const SoilParameters& soils = world.parameters().soil;
     double density = 0;
     for (const SoilPart& s : soils.of)
       if (s.moves) density = std::max(density, s.density);
@@ -54,8 +55,8 @@ double step_beside_light_solids(const World<Dim>& world, const std::string& set_
   for (const Medium& m : media) coarsest = std::max(coarsest, m.spacing);
   for (std::size_t b = 0; b < parts.of.size(); ++b) {
     const SolidPart& body = parts.of[b];
-    if (!body.material || solid_set_of(world.model(), b) != set_name) continue;
-    const Shape& shape = *world.model().bodies[b].shape;
+    if (body.set != set_name) continue;
+    const Shape& shape = *body.shape;
     double thickness = set.spacing();
     if (body.elastic) {
       // Half the body is as thick as its innermost particle is deep.
@@ -70,10 +71,10 @@ double step_beside_light_solids(const World<Dim>& world, const std::string& set_
     }
     for (const Medium& m : media) {
       const double moved = body.elastic ? std::min(thickness, m.spacing) : thickness;
-      const double lightness = m.density * m.spacing / (body.material->density * moved);
+      const double lightness = m.density * m.spacing / (body.density * moved);
       bound = std::min(bound, 0.8 * m.spacing / (m.sound * std::sqrt(lightness)));
       if (body.elastic && lightness > 2)
-        bound = std::min(bound, 1.5 * solid_courant(world.model().numerics) *
+        bound = std::min(bound, 1.5 * solid_courant(world.parameters().numerics) *
                                     set.smoothing_length() / body.wave_speed);
     }
   }

@@ -1,4 +1,5 @@
 #include "core/parallel.h"
+#include "deck/interfaces.h"
 #include "effects/exchange.h"
 
 namespace sphgeo {
@@ -8,13 +9,13 @@ namespace {
 template <int Dim>
 class OutletFlow final : public Effect<Dim> {
  public:
-  explicit OutletFlow(const Outlet& outlet) : outlet_(outlet) {}
+  explicit OutletFlow(const OutletParameters& outlet) : outlet_(outlet) {}
   static EffectInfo info() {
     return {"outlet_flow", Stage::exchange, "5.1, 6.1", "particles that leave through an outlet",
             false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    return bind_exchange<Outlet, OutletFlow>(world, "an outlet");
+    return bind_exchange<OutletFlow, Dim>(world.parameters().outlets, "an outlet");
   }
 
   std::string acts_on() const override { return "outlet '" + outlet_.name + "'"; }
@@ -52,7 +53,7 @@ class OutletFlow final : public Effect<Dim> {
   }
 
  private:
-  const Outlet& outlet_;
+  const OutletParameters& outlet_;
   Aabb box_;
 };
 

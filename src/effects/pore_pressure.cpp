@@ -26,7 +26,7 @@ class PorePressure final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!has_pore_water(world)) return {"there is no water, or there is no soil"};
-    if (!SoilParts(world).deformable) return {"no skeleton is deformable"};
+    if (!world.parameters().soil.deformable) return {"no skeleton is deformable"};
     return {std::make_unique<PorePressure>(),
             "there are water and soil with a deformable skeleton"};
   }
@@ -59,7 +59,7 @@ class PorePressure final : public Effect<Dim> {
         put_vector<Dim>(records[i], Vec<Dim>(((1 - n[i]) * m[i] / (n[i] * rho[i])) * force[i]));
       });
     });
-    const SoilParts parts(world);
+    const SoilParameters& parts = world.parameters().soil;
     const auto& part = soil_->tag(fields::part);
     const auto& mass = soil_->scalar(fields::mass);
     auto& a = soil_->vector(fields::acceleration_sum);
@@ -92,22 +92,22 @@ class PorePressure final : public Effect<Dim> {
   // coupled wave equations bounds it: c^2 < c_w^2 (1 + n^s rho^w / (n^w rho^s)) + c_s^2.
   void limit(const World<Dim>& world, StepLimits& limits) const override {
     const auto& n = water_->scalar(fields::water_fraction);
-    const SoilParts parts(world);
+    const SoilParameters& parts = world.parameters().soil;
     double lightest = parts.first.grain_density;
     for (const SoilPart& p : parts.of)
-      if (p.material && p.moves) lightest = std::min(lightest, p.grain_density);
+      if (p.moves) lightest = std::min(lightest, p.grain_density);
     const double least = block_min(
         water_->size(), [&](Index i) { return n[i] > 0 ? n[i] : 1.0; }, 1.0);
     if (least >= 1) return;
     const double sound =
-        water_->constant("sound_speed") *
-        std::sqrt(1 + (1 - least) / least * water_->constant("density") / lightest);
+        world.parameters().water.sound_speed *
+        std::sqrt(1 + (1 - least) / least * world.parameters().water.density / lightest);
     const double rate = std::hypot(sound / water_->smoothing_length(),
                                    parts.fastest_wave / soil_->smoothing_length());
-    const double bound = world.model().numerics.cfl_acoustic / rate;
+    const double bound = world.parameters().numerics.cfl_acoustic / rate;
     limits.lower_acoustic(bound, "sound in the water of pores");
     limits.advection =
-        std::min(limits.advection, world.model().numerics.advection_ratio_max * bound);
+        std::min(limits.advection, world.parameters().numerics.advection_ratio_max * bound);
   }
 
  private:

@@ -37,9 +37,7 @@ bool has_pore_water(const World<Dim>& world) {
 /// Whether some soil takes part in the motion: moved by forces or led.
 template <int Dim>
 bool soil_moves(const World<Dim>& world) {
-  for (const SoilPart& p : SoilParts(world).of)
-    if (p.material && !p.fixed) return true;
-  return false;
+  return world.parameters().soil.any_moves;
 }
 
 /// Records of the water or the soil for pairs of both.

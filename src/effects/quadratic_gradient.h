@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "deck/interfaces.h"
 #include "effects/solid_phase.h"
 
 namespace sphgeo {
@@ -14,9 +15,9 @@ namespace sphgeo {
 /// How far a particle is from the face of the resting clamp that holds it or is near, m: positive
 /// outside; empty if there is none.
 template <int Dim>
-std::optional<double> clamp_distance(const Body& body, const Vec<Dim>& at) {
+std::optional<double> clamp_distance(const SolidPart& body, const Vec<Dim>& at) {
   std::optional<double> nearest;
-  for (const ClampedRegion& clamp : body.clamped)
+  for (const ClampPart& clamp : body.clamped)
     if (!clamp.motion)
       if (const double d = clamp.shape->signed_distance(to_space<Dim>(at));
           !nearest || d < *nearest)
@@ -93,7 +94,7 @@ PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
         rows[static_cast<std::size_t>(i)].push_back(entry);
         turned[static_cast<std::size_t>(i)].push_back(turn);
       };
-      const Body& body = world.model().bodies[static_cast<std::size_t>(part[i])];
+      const SolidPart& body = world.parameters().solids[part[i]];
       if (clamp[i] < 0 && !body.clamped.empty()) {
         Vec<Dim> mirrored = Vec<Dim>::Zero();
         const double own =

@@ -13,13 +13,13 @@ namespace {
 template <int Dim>
 class ReservoirFill final : public Effect<Dim> {
  public:
-  explicit ReservoirFill(const Reservoir& reservoir) : reservoir_(reservoir) {}
+  explicit ReservoirFill(const ReservoirParameters& reservoir) : reservoir_(reservoir) {}
   static EffectInfo info() {
     return {"reservoir_fill", Stage::exchange, "5.1",
             "water added where a surface sinks below the level of a reservoir", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    return bind_exchange<Reservoir, ReservoirFill>(world, "a reservoir");
+    return bind_exchange<ReservoirFill, Dim>(world.parameters().reservoirs, "a reservoir");
   }
 
   std::string acts_on() const override { return "water, reservoir '" + reservoir_.name + "'"; }
@@ -34,8 +34,7 @@ class ReservoirFill final : public Effect<Dim> {
     water_ = &world.set("water");
     prepare_entry(world, *water_, reservoir_.name);
     places_.clear();
-    for (const Vec3& p : reservoir_.positions(water_->spacing(), Dim))
-      places_.push_back(to_scene<Dim>(p));
+    for (const Vec3& p : reservoir_.positions) places_.push_back(to_scene<Dim>(p));
   }
 
   void apply(World<Dim>& world) override {
@@ -106,7 +105,7 @@ class ReservoirFill final : public Effect<Dim> {
     }
   }
 
-  const Reservoir& reservoir_;
+  const ReservoirParameters& reservoir_;
   std::vector<Vec<Dim>> places_;
   std::map<Cell, std::vector<std::size_t>> cells_;
   Vec<Dim> lo_ = Vec<Dim>::Zero(), hi_ = Vec<Dim>::Zero();

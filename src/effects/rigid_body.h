@@ -65,7 +65,7 @@ void RigidBodies<Dim>::find(const World<Dim>& world) {
   if (!bodies_.empty()) return;
   const ParticleSet<Dim>& set = world.set(set_);
   const auto& part = set.tag(fields::part);
-  const SolidParts parts(world);
+  const SolidParameters& parts = world.parameters().solids;
   std::vector<std::vector<std::uint32_t>> all(parts.of.size());
   for (Index i = 0; i < set.size(); ++i)
     if (!parts[part[i]].elastic)

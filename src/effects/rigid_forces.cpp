@@ -16,13 +16,10 @@ class RigidForces final : public Effect<Dim> {
     Binding<Dim> binding = bind_solids<RigidForces>(world, true);
     // Where there are elastic solids too, their internal forces start the sum.
     std::erase_if(binding.effects, [&](const auto& e) {
-      for (std::size_t b = 0; b < world.model().bodies.size(); ++b) {
-        const SolidMaterial* m = solid_of(world.model(), world.model().bodies[b]);
-        if (m && !m->rigid() &&
-            solid_set_of(world.model(), b) == static_cast<const RigidForces&>(*e).set_)
-          return true;
-      }
-      return false;
+      const auto& of = world.parameters().solids.of;
+      return std::any_of(of.begin(), of.end(), [&](const SolidPart& p) {
+        return p.elastic && p.set == static_cast<const RigidForces&>(*e).set_;
+      });
     });
     if (binding.effects.empty()) binding.because = "there are no solids that are all rigid";
     return binding;

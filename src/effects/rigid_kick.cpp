@@ -43,15 +43,14 @@ class RigidKick final : public Effect<Dim> {
   }
 
   void prepare(World<Dim>& world) override {
-    for (std::size_t b = 0; b < world.model().bodies.size(); ++b)
-      if (const SolidMaterial* m = solid_of(world.model(), world.model().bodies[b]);
-          m && m->rigid() && solid_set_of(world.model(), b) == set_name())
-        sound_ = std::max(sound_, std::sqrt(m->contact_stiffness() / m->density));
+    for (const SolidPart& p : world.parameters().solids.of)
+      if (p.rigid() && p.set == set_name())
+        sound_ = std::max(sound_, std::sqrt(p.contact_stiffness / p.density));
   }
 
   void limit(const World<Dim>& world, StepLimits& limits) const override {
     const ParticleSet<Dim>& set = world.set(set_name());
-    const Numerics& n = world.model().numerics;
+    const NumericsParameters& n = world.parameters().numerics;
     const double h = set.smoothing_length();
     const auto& v = set.vector(fields::velocity);
     const double speed = std::sqrt(block_max(

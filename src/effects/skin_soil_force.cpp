@@ -15,7 +15,7 @@ class SkinSoilForce final : public Effect<Dim> {
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("skin") || !world.find("soil"))
       return {"there are no solids, or there is no soil"};
-    if (!SoilParts(world).deformable) return {"no skeleton is deformable"};
+    if (!world.parameters().soil.deformable) return {"no skeleton is deformable"};
     return {std::make_unique<SkinSoilForce>(), "there are solids and soil"};
   }
 

@@ -23,13 +23,13 @@ class SkinState final : public Effect<Dim> {
   }
 
   explicit SkinState(const World<Dim>& world) {
-    const SolidParts parts(world);
+    const SolidParameters& parts = world.parameters().solids;
     for (const std::string& set : solid_sets(world)) {
       solids_.push_back(set);
       deformations_.emplace_back(set);
       bool elastic = false;
       for (std::size_t b = 0; b < parts.of.size(); ++b)
-        elastic = elastic || (parts.of[b].elastic && solid_set_of(world.model(), b) == set);
+        elastic = elastic || (parts.of[b].elastic && parts.of[b].set == set);
       elastic_.push_back(elastic);
     }
   }
@@ -80,7 +80,7 @@ class SkinState final : public Effect<Dim> {
     const auto& x = set.vector(fields::position);
     const auto& reference = set.vector(fields::reference_position);
     const auto& part = set.tag(fields::part);
-    const SolidParts parts(world);
+    const SolidParameters& parts = world.parameters().solids;
     deformation.find_frames(world);
     ParticleSet<Dim>& skin = world.set("skin");
     auto& normal = skin.vector(fields::normal);

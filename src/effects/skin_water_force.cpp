@@ -33,7 +33,7 @@ class SkinWaterForce final : public Effect<Dim> {
   void apply(World<Dim>& world) override {
     const ParticleSet<Dim>& water = world.set("water");
     const WaterForceOnWall<Dim> pair{
-        WallPair<Dim>(WaterConstants::of(world), water.smoothing_length(), water.spacing())};
+        WallPair<Dim>(world.parameters().water, water.smoothing_length(), water.spacing())};
     auto& force = world.set("skin").vector(fields::water_force);
     const Field<double>* scale = gradient_scale(world);
     parallel_for(force.size(), [&](Index i) { force[i].setZero(); });

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "deck/expression.h"
 #include "effects/effect.h"
 #include "effects/soil_phase.h"
 
@@ -18,7 +19,7 @@ class SoilKick final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
-    return {std::make_unique<SoilKick>(SoilParts(world).deformable), "there is soil"};
+    return {std::make_unique<SoilKick>(world.parameters().soil.deformable), "there is soil"};
   }
 
   explicit SoilKick(bool deformable) : deformable_(deformable) {}
@@ -37,13 +38,13 @@ class SoilKick final : public Effect<Dim> {
 
   void apply(World<Dim>& world) override {
     const double dt = world.clock.dt_acoustic;
-    const SoilParts parts(world);
+    const SoilParameters& parts = world.parameters().soil;
     auto& x = soil_->vector(fields::position);
     auto& v = soil_->vector(fields::velocity);
     auto& a = soil_->vector(fields::acceleration);
     const Field<Vec<Dim>>* sum = deformable_ ? &soil_->vector(fields::acceleration_sum) : nullptr;
     const auto& part = soil_->tag(fields::part);
-    const bool repack = world.model().numerics.soil_pair_geometry == "current";
+    const bool repack = world.parameters().numerics.soil_pair_geometry == PairGeometry::current;
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& records = world.records("soil", 0).template get<T>();
@@ -55,7 +56,7 @@ class SoilKick final : public Effect<Dim> {
         } else if (parts[part[i]].fixed) {
           a[i].setZero();
         } else {
-          follow(world.model().bodies[static_cast<std::size_t>(part[i])], dt, x[i], v[i], a[i]);
+          follow(*parts[part[i]].velocity, dt, x[i], v[i], a[i]);
         }
         T* slot = records[i];
         for (int k = 0; k < Dim; ++k) slot[soil_slot::velocity + k] = static_cast<T>(v[i][k]);
@@ -65,8 +66,8 @@ class SoilKick final : public Effect<Dim> {
   }
 
   void limit(const World<Dim>& world, StepLimits& limits) const override {
-    const Numerics& n = world.model().numerics;
-    const SoilParts parts(world);
+    const NumericsParameters& n = world.parameters().numerics;
+    const SoilParameters& parts = world.parameters().soil;
     const double h = soil_->smoothing_length();
     if (!parts.deformable && world.find("water")) return;  // at rest or led: no wave runs in it
     const double sound = parts.deformable ? parts.fastest_wave : parts.first.sound_speed;
@@ -86,11 +87,11 @@ class SoilKick final : public Effect<Dim> {
 
  private:
   // Midpoint rule through a velocity field; x comes at the middle of the step, reached with v.
-  static void follow(const Body& body, double dt, Vec<Dim>& x, Vec<Dim>& v, Vec<Dim>& a) {
+  static void follow(const VectorFormula& velocity, double dt, Vec<Dim>& x, Vec<Dim>& v,
+                     Vec<Dim>& a) {
     const auto field = [&](const Vec<Dim>& at) {
       const Vec3 p = to_space<Dim>(at);
-      return to_scene<Dim>(
-          Vec3(body.velocity[0](p, 0), body.velocity[1](p, 0), body.velocity[2](p, 0)));
+      return to_scene<Dim>(Vec3(velocity[0](p, 0), velocity[1](p, 0), velocity[2](p, 0)));
     };
     const Vec<Dim> start = x - 0.5 * dt * v;
     x = start + dt * field(x);

@@ -61,7 +61,7 @@ class SoilMomentum final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
-    if (!SoilParts(world).deformable) return {"no skeleton is deformable"};
+    if (!world.parameters().soil.deformable) return {"no skeleton is deformable"};
     return {std::make_unique<SoilMomentum>(), "there is soil with a deformable skeleton"};
   }
 
@@ -78,17 +78,17 @@ class SoilMomentum final : public Effect<Dim> {
   void prepare(World<Dim>& world) override { soil_ = &world.set("soil"); }
 
   void apply(World<Dim>& world) override {
-    const SoilParts parts(world);
+    const SoilParameters& parts = world.parameters().soil;
     if (parts.uniform) run<true>(world, parts);
     else run<false>(world, parts);
   }
 
  private:
   template <bool Uniform>
-  void run(World<Dim>& world, const SoilParts& parts) {
+  void run(World<Dim>& world, const SoilParameters& parts) {
     using Pair = StressPair<Dim, Uniform>;
     const Pair pair{soil_kernel(*soil_), parts.first.impedance(), 1 / parts.first.sound_speed,
-                    soil_limiter(world)};
+                    world.parameters().soil.limiter};
     auto& sum_of_forces = soil_->vector(fields::acceleration_sum);
     const auto& x = soil_->vector(fields::position);
     const auto& m = soil_->scalar(fields::mass);

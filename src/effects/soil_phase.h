@@ -1,5 +1,5 @@
 #pragma once
-// What the effects of the soil phase share: parameters of its parts, record layout, the Riemann
+// What the effects of the soil phase share: record layout, the Riemann
 // flux.
 
 #include <algorithm>
@@ -8,66 +8,18 @@
 
 #include "effects/lattice_sums.h"
 #include "effects/water_phase.h"
-#include "materials/soil.h"
+#include "materials/drucker_prager.h"
 #include "sph/gather.h"
 #include "sph/kernel.h"
+#include "sph/parameters.h"
 #include "sph/world.h"
 
 namespace sphgeo {
 
-/// Parameters of one part (body) of the soil, SI.
-struct SoilPart {
-  const Soil* material = nullptr;  ///< null for a body that is no soil
-  bool moves = false;              ///< by forces
-  bool fixed = false;              ///< never moves
-  double grain_density = 0;        ///< rho^s
-  double density = 0;      ///< rho_0 of the skeleton: rho^s times its mean volume fraction at t = 0
-  double sound_speed = 0;  ///< c_0 of Eq. 53
-  double friction = 0;     ///< tan phi
-  DruckerPrager<double> constants{};  ///< of the stress point, dry
-  double wet_strength = 0;            ///< k_c at full saturation
-  double impedance() const { return density * sound_speed; }
-};
-
-/// Parameters of all parts, by index of the body.
-struct SoilParts {
-  std::vector<SoilPart> of;
-  bool uniform = true;  ///< all soil is of one impedance and density: the pair flux needs no table
-  bool deformable = false;  ///< some soil moves by forces
-  SoilPart first;           ///< of the first body of soil
-  double fastest = 0;       ///< largest speed of sound of soil that moves by forces
-  double fastest_wave = 0;  ///< of compression waves: sqrt((K + 4 G / 3) / rho_0)
-
-  template <int Dim>
-  explicit SoilParts(const World<Dim>& world) {
-    const ParticleSet<Dim>& soil = world.set("soil");
-    for (std::size_t b = 0; b < world.model().bodies.size(); ++b) {
-      SoilPart part;
-      part.material =
-          dynamic_cast<const Soil*>(world.model().material(world.model().bodies[b].material));
-      if (part.material) {
-        part.moves = part.material->moves_by_forces();
-        part.fixed = part.material->skeleton == "fixed";
-        part.grain_density = part.material->density;
-        part.density = soil.constant("density." + std::to_string(b));
-        part.sound_speed = std::sqrt(part.material->bulk_modulus() / part.density);
-        part.friction = part.material->elastic() ? 0 : part.material->tan_friction();
-        part.constants = part.material->constants();
-        part.wet_strength = part.material->constants(1.0).strength;
-        if (!first.material) first = part;
-        uniform = uniform && part.density == first.density && part.sound_speed == first.sound_speed;
-        deformable = deformable || part.moves;
-        if (part.moves) {
-          fastest = std::max(fastest, part.sound_speed);
-          fastest_wave =
-              std::max(fastest_wave, std::sqrt(part.material->oedometric_modulus() / part.density));
-        }
-      }
-      of.push_back(part);
-    }
-  }
-  const SoilPart& operator[](std::int32_t part) const { return of[static_cast<std::size_t>(part)]; }
-};
+/// The stress point of a soil.
+inline DruckerPrager<double> stress_point(const StressPointParameters& m) {
+  return {m.bulk, m.shear, m.friction, m.dilation, m.strength, m.apex};
+}
 
 /// The kernel of the soil. Its gradient is divided by the lattice moment, 0.974 in 2D and 0.979 in
 /// 3D for h = 1.3 dp: that is how much too weak a gradient the bare sums see, and by which the
@@ -78,12 +30,6 @@ Kernel<Dim> soil_kernel(const ParticleSet<Dim>& soil) {
   Kernel<Dim> kernel(soil.smoothing_length());
   kernel.slope /= lattice_sums(kernel, soil.spacing()).moment;
   return kernel;
-}
-
-/// xi^s of Eq. 54.
-template <int Dim>
-double soil_limiter(const World<Dim>& world) {
-  return world.model().numerics.limiter_soil.value_or(20.0 * Dim);
 }
 
 /// Slots of a soil record behind the position. Volume and velocity sit where the water has them.
@@ -122,7 +68,7 @@ inline constexpr int soil_records = Dim == 2 ? 2 : 3;
 /// Number of records that this scene needs.
 template <int Dim>
 int soil_records_used(const World<Dim>& world) {
-  return SoilParts(world).uniform && !world.find("walls") && !world.find("skin")
+  return world.parameters().soil.uniform && !world.find("walls") && !world.find("skin")
              ? 2
              : soil_records<Dim>;
 }
@@ -217,7 +163,7 @@ class SoilPacking {
  public:
   SoilPacking(World<Dim>& world, const ParticleSet<Dim>& soil)
       : count_(soil_records_used(world)),
-        parts_(world),
+        parts_(world.parameters().soil),
         volume_(soil.scalar(fields::volume)),
         velocity_(soil.vector(fields::velocity)),
         stress_(soil.tensor(fields::stress)),
@@ -263,7 +209,7 @@ class SoilPacking {
 
   int count_;
   Records<Dim, T>* records_[soil_records<Dim>] = {};
-  SoilParts parts_;
+  const SoilParameters& parts_;
   const Field<double>& volume_;
   const Field<Vec<Dim>>& velocity_;
   const Field<Sym3>& stress_;

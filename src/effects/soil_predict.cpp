@@ -38,7 +38,7 @@ class SoilPredict final : public Effect<Dim> {
 
   void apply(World<Dim>& world) override {
     const double half = 0.5 * world.clock.dt_acoustic;
-    const SoilParts parts(world);
+    const SoilParameters& parts = world.parameters().soil;
     auto& n = soil_->scalar(fields::volume_fraction);
     auto& x = soil_->vector(fields::position);
     auto& volume = soil_->scalar(fields::volume);
@@ -46,7 +46,7 @@ class SoilPredict final : public Effect<Dim> {
     const auto& v = soil_->vector(fields::velocity);
     const auto& m = soil_->scalar(fields::mass);
     const auto& part = soil_->tag(fields::part);
-    const bool repack = world.model().numerics.soil_pair_geometry == "current";
+    const bool repack = world.parameters().numerics.soil_pair_geometry == PairGeometry::current;
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& first = world.records("soil", 0).template get<T>();

@@ -64,9 +64,9 @@ class SoilReinitialization final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
-    if (!SoilParts(world).deformable) return {"no skeleton is deformable"};
-    const Numerics& n = world.model().numerics;
-    if (n.volume_fraction_reinitialization == "none" && !n.transport_velocity_soil)
+    if (!world.parameters().soil.deformable) return {"no skeleton is deformable"};
+    const NumericsParameters& n = world.parameters().numerics;
+    if (!n.volume_fraction_by_summation && !n.transport_velocity_soil)
       return {
           "numerics switches off both volume_fraction_reinitialization and "
           "transport_velocity_soil"};
@@ -77,8 +77,8 @@ class SoilReinitialization final : public Effect<Dim> {
 
   explicit SoilReinitialization(const World<Dim>& world)
       : walls_(wall_sets(world)),
-        transport_(world.model().numerics.transport_velocity_soil),
-        sums_(world.model().numerics.volume_fraction_reinitialization == "summation") {}
+        transport_(world.parameters().numerics.transport_velocity_soil),
+        sums_(world.parameters().numerics.volume_fraction_by_summation) {}
 
   std::string acts_on() const override { return "soil"; }
   Needs needs() const override {
@@ -115,7 +115,7 @@ class SoilReinitialization final : public Effect<Dim> {
   void run(World<Dim>& world) {
     using Pair = SoilArrangement<Dim, Transport>;
     around_.assign(static_cast<std::size_t>(soil_->size()), {});
-    const SoilParts parts(world);
+    const SoilParameters& parts = world.parameters().soil;
     const auto& m = soil_->scalar(fields::mass);
     const auto& n0 = soil_->scalar(fields::initial_volume_fraction);
     const auto& part = soil_->tag(fields::part);
@@ -139,7 +139,7 @@ class SoilReinitialization final : public Effect<Dim> {
         gather<Pair::template Sums>(world.list("soil", set), records,
                                     world.records(set).template get<T>(), pair, keep);
     });
-    if (world.model().numerics.volume_fraction_reinitialization == "summation") {
+    if (world.parameters().numerics.volume_fraction_by_summation) {
       auto& n = soil_->scalar(fields::volume_fraction);
       auto& crowding = soil_->scalar(fields::crowding);
       const double self = Kernel<Dim>(soil_->smoothing_length()).w(0.0);
@@ -166,10 +166,10 @@ class SoilReinitialization final : public Effect<Dim> {
   // free surface stay: there the sum measures the cut kernel, not the arrangement (as for water).
   void shift(World<Dim>& world) {
     const double h = soil_->smoothing_length();
-    const double factor = 2 * world.model().numerics.transport_coefficient * h * h;
+    const double factor = 2 * world.parameters().numerics.transport_coefficient * h * h;
     auto& x = soil_->vector(fields::position);
     auto& surface = soil_->tag(fields::surface);
-    const SoilParts parts(world);
+    const SoilParameters& parts = world.parameters().soil;
     const auto& part = soil_->tag(fields::part);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);

@@ -31,7 +31,7 @@ class SoilState final : public Effect<Dim> {
   }
   void prepare(World<Dim>& world) override { soil_ = &world.set("soil"); }
   void apply(World<Dim>& world) override {
-    const SoilParts parts(world);
+    const SoilParameters& parts = world.parameters().soil;
     auto& p = soil_->scalar(fields::pressure);
     auto& volume = soil_->scalar(fields::volume);
     const auto& n = soil_->scalar(fields::volume_fraction);

@@ -66,18 +66,15 @@ class SoilStress final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
-    bool moves = false;
-    for (const SoilPart& p : SoilParts(world).of)
-      moves = moves || (p.material && p.material->skeleton != "fixed");
-    if (!moves) return {"every skeleton is fixed"};
+    if (!world.parameters().soil.any_moves) return {"every skeleton is fixed"};
     return {std::make_unique<SoilStress>(world), "there is soil that moves"};
   }
 
   explicit SoilStress(const World<Dim>& world)
       : walls_(wall_sets(world)),
         wetted_(world.set("soil").has(fields::saturation)),
-        crowded_(SoilParts(world).deformable &&
-                 world.model().numerics.volume_fraction_reinitialization == "summation") {}
+        crowded_(world.parameters().soil.deformable &&
+                 world.parameters().numerics.volume_fraction_by_summation) {}
 
   std::string acts_on() const override {
     return !walls_.empty() ? "soil, also near walls" : "soil";
@@ -111,7 +108,7 @@ class SoilStress final : public Effect<Dim> {
   template <class T>
   void run(World<Dim>& world) {
     const Kernel<Dim> kernel = soil_kernel(*soil_);
-    const SoilParts parts(world);
+    const SoilParameters& parts = world.parameters().soil;
     const auto records = view(world.records("soil", 0).template get<T>());
     const NeighborList& soil_list = world.list("soil", "soil");
     parallel_blocks(soil_->size(), block_size, [&](Index first, Index end, Index b) {
@@ -138,7 +135,7 @@ class SoilStress final : public Effect<Dim> {
 
   // The constitutive step of particles first ... first + count - 1, as many at once as there are
   // lanes.
-  void finish_block(World<Dim>& world, const SoilParts& parts, const Sums* sums, Index first,
+  void finish_block(World<Dim>& world, const SoilParameters& parts, const Sums* sums, Index first,
                     Index count) {
     const double dt = world.clock.dt_acoustic;
     // Soil that is packed closer than it was at t = 0, more than its pressure tells, meets the
@@ -148,7 +145,8 @@ class SoilStress final : public Effect<Dim> {
     // against the flow.
     const Field<double>* crowding = crowded_ ? &soil_->scalar(fields::crowding) : nullptr;
     const double per_time = parts.fastest / (20 * soil_->smoothing_length());
-    const bool corrected = world.model().numerics.soil_velocity_gradient == "corrected";
+    const bool corrected =
+        world.parameters().numerics.soil_velocity_gradient == VelocityGradient::corrected;
     auto& stress = soil_->tensor(fields::stress);
     auto& correction = soil_->tensor(fields::gradient_correction);
     auto& strain = soil_->scalar(fields::plastic_strain);
@@ -171,7 +169,7 @@ class SoilStress final : public Effect<Dim> {
           for (int c = 0; c < Dim; ++c) sum[a][c].raw[lane] = from.gradient[a][c];
         for (int c = 0; c < Dim * (Dim + 1) / 2; ++c) moment[c].raw[lane] = from.moment[c];
         for (int c = 0; c < 6; ++c) s[c].raw[lane] = stress[i][c];
-        DruckerPrager<double> soil = parts[part[i]].constants;
+        DruckerPrager<double> soil = stress_point(parts[part[i]].constants);
         if (wetted_)  // Eq. 108: the strength falls with the cohesion
           soil = with_strength(soil,
                                soil.strength + soil_->scalar(fields::saturation)[i] *

@@ -19,7 +19,7 @@ class SoilVelocity final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!has_pore_water(world)) return {"there is no water, or there is no soil"};
-    if (world.model().numerics.pore_water == "constant_volume")
+    if (!world.parameters().water.follows_porosity)
       return {"numerics.pore_water is constant_volume: the porosity does not enter the density"};
     return {std::make_unique<SoilVelocity>(world), "there are water and soil"};
   }

@@ -29,7 +29,8 @@ class SoilWallForce final : public Effect<Dim> {
             "stress and dissipation (one-sided Riemann) of walls on the soil", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    if (world.find("soil") && !SoilParts(world).deformable) return {"no skeleton is deformable"};
+    if (world.find("soil") && !world.parameters().soil.deformable)
+      return {"no skeleton is deformable"};
     return bind_walls<SoilWallForce>(world, "soil");
   }
 

@@ -36,7 +36,7 @@ struct SoilWallPair {
 
   SoilWallPair(const World<Dim>& world, const ParticleSet<Dim>& soil)
       : kernel(soil_kernel(soil)),
-        limiter(soil_limiter(world)),
+        limiter(world.parameters().soil.limiter),
         near(0.85 * soil.spacing()),
         per_spacing(1 / soil.spacing()),
         per_step(1 / std::max(world.clock.dt_acoustic, 1e-12)) {}

@@ -47,10 +47,10 @@ class SolidContact final : public Effect<Dim> {
     if (!world.find("skin")) return {"no solid can meet anything"};
     std::size_t solids = 0;
     bool folds = false;
-    for (const Body& b : world.model().bodies)
-      if (solid_of(world.model(), b)) {
+    for (const SolidPart& p : world.parameters().solids.of)
+      if (p.is_solid) {
         ++solids;
-        folds = folds || b.self_contact;
+        folds = folds || p.self_contact;
       }
     if (solids < 2 && !folds && !world.find("walls"))
       return {"there is one solid, no wall, and it does not fold"};
@@ -138,7 +138,7 @@ class SolidContact final : public Effect<Dim> {
 template <int Dim>
 void SolidContact<Dim>::find_reaches(const World<Dim>& world) {
   const ParticleSet<Dim>& skin = world.set("skin");
-  bodies_.assign(world.model().bodies.size(), {});
+  bodies_.assign(world.parameters().solids.of.size(), {});
   std::vector<Vec<Dim>> at(static_cast<std::size_t>(skin.size()));
   double most = 0;
   for (Index k = 0; k < skin.size(); ++k) {
@@ -149,11 +149,11 @@ void SolidContact<Dim>::find_reaches(const World<Dim>& world) {
   }
   const auto frame = world.grid("skin").frame();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const SolidMaterial* m = solid_of(world.model(), world.model().bodies[b]);
-    if (!m) continue;
-    bodies_[b].stiffness = m->contact_stiffness();
-    bodies_[b].impedance = m->contact_damping * std::sqrt(m->contact_stiffness() * m->density);
-    bodies_[b].friction = m->friction;
+    const SolidPart& p = world.parameters().solids.of[b];
+    if (!p.is_solid) continue;
+    bodies_[b].stiffness = p.contact_stiffness;
+    bodies_[b].impedance = p.contact_damping * std::sqrt(p.contact_stiffness * p.density);
+    bodies_[b].friction = p.friction;
   }
   const auto close = [&](std::int32_t body, double r2) {
     double& g = bodies_[static_cast<std::size_t>(body)].reach;
@@ -176,7 +176,7 @@ bool SolidContact<Dim>::may_touch(const World<Dim>& world, Index a, Index b) con
   const auto &p = map_.at(a), &q = map_.at(b);
   const std::int32_t part = p.of->part[p.i];
   if (part != q.of->part[q.i]) return true;
-  if (!world.model().bodies[static_cast<std::size_t>(part)].self_contact) return false;
+  if (!world.parameters().solids[part].self_contact) return false;
   return (p.of->reference_position[p.i] - q.of->reference_position[q.i]).norm() >
          2 * p.of->smoothing_length;
 }
@@ -195,13 +195,13 @@ void SolidContact<Dim>::find_partners(World<Dim>& world) {
   // Each body comes 0.2 of its h closer in an advection step; the skin's h is 1.25 of the largest.
   const double radius = 2 * skin.smoothing_length();
   using Box = Eigen::AlignedBox<double, Dim>;
-  std::vector<Box> box(world.model().bodies.size());
+  std::vector<Box> box(world.parameters().solids.of.size());
   for (Index k = 0; k < skin.size(); ++k)
     box[static_cast<std::size_t>(part[k])].extend(x[static_cast<std::size_t>(k)]);
   std::vector<Box> meeting(box.size());  // where a body may meet others
   for (std::size_t a = 0; a < box.size(); ++a)
     for (std::size_t b = 0; b < box.size(); ++b) {
-      if (a == b && !world.model().bodies[a].self_contact) continue;
+      if (a == b && !world.parameters().solids.of[a].self_contact) continue;
       if (box[a].isEmpty() || box[b].isEmpty()) continue;
       const Vec<Dim> margin = Vec<Dim>::Constant(radius);
       const Box common = Box(box[a].min() - margin, box[a].max() + margin)

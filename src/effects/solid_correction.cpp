@@ -74,12 +74,12 @@ class SolidCorrection final : public Effect<Dim> {
                                               correction[i] = b;
                                             });
     });
-    if (world.model().numerics.solid_gradient == "quadratic")
+    if (world.parameters().numerics.solid_gradient == SolidGradient::quadratic)
       world.reference_weights(set_) = quadratic_weights(world, set_);
   }
   void restore(World<Dim>& world) override {
     place(world);
-    if (world.model().numerics.solid_gradient == "quadratic")
+    if (world.parameters().numerics.solid_gradient == SolidGradient::quadratic)
       world.reference_weights(set_) = quadratic_weights(world, set_);
   }
 

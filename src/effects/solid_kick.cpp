@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "core/parallel.h"
+#include "deck/motion.h"
 #include "effects/light_solids.h"
 #include "effects/solid_phase.h"
 
@@ -39,7 +40,7 @@ class SolidKick final : public Effect<Dim> {
     const double dt = clock.dt_solid, end = clock.solid_time() + dt,
                  share = 1.0 / clock.solid_steps_each;
     const bool first = clock.solid_step == 0;
-    const SolidParts parts(world);
+    const SolidParameters& parts = world.parameters().solids;
     auto& x = set.vector(fields::position);
     auto& v = set.vector(fields::velocity);
     auto& mean_a = set.vector(fields::acceleration);
@@ -61,10 +62,7 @@ class SolidKick final : public Effect<Dim> {
         v[i] = (v[i] * (1 - 0.5 * dt * p.damping) + dt * a) / (1 + 0.5 * dt * p.damping);
         x[i] += 0.5 * dt * v[i];
       } else {
-        const auto& motion = world.model()
-                                 .bodies[static_cast<std::size_t>(part[i])]
-                                 .clamped[static_cast<std::size_t>(clamp[i])]
-                                 .motion;
+        const Motion* motion = p.clamped[static_cast<std::size_t>(clamp[i])].motion;
         const Vec3 from = to_space<Dim>(reference[i]);
         x[i] = motion ? to_scene<Dim>(motion->position(from, end)) : reference[i];
         v[i] = motion ? to_scene<Dim>(motion->velocity(from, end)) : Vec<Dim>::Zero();
@@ -75,9 +73,9 @@ class SolidKick final : public Effect<Dim> {
   }
 
   void prepare(World<Dim>& world) override {
-    const SolidParts parts(world);
+    const SolidParameters& parts = world.parameters().solids;
     for (std::size_t b = 0; b < parts.of.size(); ++b)
-      if (parts.of[b].elastic && solid_set_of(world.model(), b) == set_) {
+      if (parts.of[b].elastic && parts.of[b].set == set_) {
         sound_ = std::max(sound_, parts.of[b].wave_speed);
         slowest_ = std::min(slowest_, parts.of[b].wave_speed);
       }
@@ -85,7 +83,7 @@ class SolidKick final : public Effect<Dim> {
 
   void limit(const World<Dim>& world, StepLimits& limits) const override {
     const ParticleSet<Dim>& set = world.set(set_);
-    const Numerics& n = world.model().numerics;
+    const NumericsParameters& n = world.parameters().numerics;
     const double h = set.smoothing_length();
     const auto& v = set.vector(fields::velocity);
     const auto& a = set.vector(fields::acceleration);

@@ -17,7 +17,7 @@ class SolidLoad final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     const bool water = world.find("water"),
-               soil = world.find("soil") && SoilParts(world).deformable;
+               soil = world.find("soil") && world.parameters().soil.deformable;
     if (!world.find("skin") || (!water && !soil)) return {"no solid is in water or soil"};
     return {std::make_unique<SolidLoad>(solid_sets(world), water, soil),
             "there are solids in water or soil"};

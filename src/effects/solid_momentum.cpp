@@ -93,7 +93,7 @@ class SolidMomentum final : public Effect<Dim> {
     const auto& m = set.scalar(fields::mass);
     const auto& part = set.tag(fields::part);
     auto& sum_of_forces = set.vector(fields::acceleration_sum);
-    const SolidParts parts(world);
+    const SolidParameters& parts = world.parameters().solids;
     const PairWeights<Dim>& more = world.reference_weights(set_);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);

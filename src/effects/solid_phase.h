@@ -1,5 +1,5 @@
 #pragma once
-// What the effects of solids share: parameters of their bodies, record layout, the deformation of
+// What the effects of solids share: record layout, the deformation of
 // the places at hand.
 
 #include <Eigen/Geometry>
@@ -12,7 +12,6 @@
 #include "effects/effect.h"
 #include "effects/soil_phase.h"
 #include "materials/hyperelastic.h"
-#include "materials/solid.h"
 #include "sph/gather.h"
 #include "sph/kernel.h"
 
@@ -20,59 +19,28 @@ namespace sphgeo {
 
 /// CFL number of elastic solids (Eq. 94). With the quadratic gradient, weights of one side only, at
 /// corners, see short waves twice as well.
-inline double solid_courant(const Numerics& n) {
-  return (n.solid_gradient == "quadratic" ? 0.7 : 1.0) * n.cfl_solid;
+inline double solid_courant(const NumericsParameters& n) {
+  return (n.solid_gradient == SolidGradient::quadratic ? 0.7 : 1.0) * n.cfl_solid;
 }
 
-/// Parameters of one body, SI.
-struct SolidPart {
-  const SolidMaterial* material = nullptr;  ///< null for a body that is no solid
-  const Elastic* elastic = nullptr;         ///< null for a rigid one too
-  Hyperelastic law{0, 0};
-  double wave_speed = 0;
-  double damping = 0;
-  double viscosity = 0;  ///< alpha rho_0 c, Pa s/m
-};
-
-/// Parameters of all bodies of the deck, by index.
-struct SolidParts {
-  std::vector<SolidPart> of;
-
-  template <int Dim>
-  explicit SolidParts(const World<Dim>& world) {
-    for (const Body& body : world.model().bodies) {
-      SolidPart part;
-      part.material = solid_of(world.model(), body);
-      part.elastic = dynamic_cast<const Elastic*>(part.material);
-      if (part.elastic) {
-        part.law = {part.elastic->shear_modulus(), part.elastic->lame(),
-                    part.elastic->law == "neo_hookean"};
-        part.wave_speed = part.elastic->wave_speed();
-        part.damping = part.elastic->damping;
-        part.viscosity =
-            part.elastic->viscosity_factor * part.elastic->density * part.elastic->wave_speed();
-      }
-      of.push_back(part);
-    }
-  }
-  const SolidPart& operator[](std::int32_t part) const {
-    return of[static_cast<std::size_t>(part)];
-  }
-};
+/// The law of an elastic solid.
+inline Hyperelastic law_of(const SolidPart& part) {
+  return {part.shear, part.lame, part.neo_hookean};
+}
 
 /// Whether what is clamped bears no strain: the quadratic gradient has the clamp's face in the free
 /// particles.
 template <int Dim>
 bool clamps_at_face(const World<Dim>& world) {
-  return world.model().numerics.solid_gradient == "quadratic";
+  return world.parameters().numerics.solid_gradient == SolidGradient::quadratic;
 }
 
 /// Whether a set has solids with an artificial viscosity.
 template <int Dim>
 bool viscous_solids(const World<Dim>& world, const std::string& set) {
-  const SolidParts parts(world);
+  const SolidParameters& parts = world.parameters().solids;
   for (std::size_t b = 0; b < parts.of.size(); ++b)
-    if (parts.of[b].viscosity > 0 && solid_set_of(world.model(), b) == set) return true;
+    if (parts.of[b].viscosity > 0 && parts.of[b].set == set) return true;
   return false;
 }
 
@@ -89,11 +57,9 @@ std::vector<std::string> solid_sets(const World<Dim>& world) {
 template <class E, int Dim>
 Binding<Dim> bind_solids(const World<Dim>& world, bool rigid = false) {
   Binding<Dim> binding(rigid ? "there are no rigid solids" : "there are no elastic solids");
-  for (std::size_t b = 0; b < world.model().bodies.size(); ++b) {
-    const SolidMaterial* material = solid_of(world.model(), world.model().bodies[b]);
-    if (!material || material->rigid() != rigid) continue;
-    const std::string set = solid_set_of(world.model(), b);
-    if (!world.find(set)) continue;
+  for (const SolidPart& part : world.parameters().solids.of) {
+    if (!part.is_solid || part.rigid() != rigid || !world.find(part.set)) continue;
+    const std::string& set = part.set;
     const auto same = [&](const auto& e) { return static_cast<const E&>(*e).set_name() == set; };
     if (std::any_of(binding.effects.begin(), binding.effects.end(), same)) continue;
     binding.effects.push_back(std::make_unique<E>(set));
@@ -266,7 +232,7 @@ void Deformation<Dim>::find_frames(const World<Dim>& world) {
   const auto& x = set.vector(fields::position);
   const auto& reference = set.vector(fields::reference_position);
   const auto& part = set.tag(fields::part);
-  const std::size_t bodies = world.model().bodies.size();
+  const std::size_t bodies = world.parameters().solids.of.size();
   frames_.assign(bodies, {});
   // An odd stride: on a lattice, an even one may see one plane only.
   const Index stride = std::max<Index>(1, set.size() / (samples * static_cast<Index>(bodies))) | 1;

@@ -1,4 +1,5 @@
 #include "core/parallel.h"
+#include "deck/motion.h"
 #include "effects/solid_phase.h"
 
 namespace sphgeo {
@@ -36,7 +37,7 @@ class SolidPredict final : public Effect<Dim> {
     ParticleSet<Dim>& set = world.set(set_);
     if (world.clock.solid_step == 0) deformation_.find_frames(world);
     move_and_pack(world, set);
-    const SolidParts parts(world);
+    const SolidParameters& parts = world.parameters().solids;
     const auto& part = set.tag(fields::part);
     const auto& correction = set.tensor(fields::reference_correction);
     const auto& clamp = set.tag(fields::clamp);
@@ -51,7 +52,7 @@ class SolidPredict final : public Effect<Dim> {
         if (p.elastic && !(at_face && clamp[i] >= 0)) {
           const Mat3 grad = to_space_tensor<Dim>(g);
           // P = F S with F = R (I + g).
-          const Mat3 s = second_piola(grad, p.law);
+          const Mat3 s = second_piola(grad, law_of(p));
           pb = deformation_.frame(part[i]).rotation * to_scene_tensor<Dim>(s + grad * s) *
                to_matrix<Dim>(correction[i]);
         }
@@ -72,7 +73,7 @@ class SolidPredict final : public Effect<Dim> {
     const auto& reference = set.vector(fields::reference_position);
     const auto& part = set.tag(fields::part);
     const auto& clamp = set.tag(fields::clamp);
-    const SolidParts parts(world);
+    const SolidParameters& parts = world.parameters().solids;
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       auto& records = world.records(set_, 0).template get<T>();
@@ -85,10 +86,7 @@ class SolidPredict final : public Effect<Dim> {
         if (clamp[i] < 0) {
           x[i] += half * v[i];
         } else {
-          const auto& motion = world.model()
-                                   .bodies[static_cast<std::size_t>(part[i])]
-                                   .clamped[static_cast<std::size_t>(clamp[i])]
-                                   .motion;
+          const Motion* motion = parts[part[i]].clamped[static_cast<std::size_t>(clamp[i])].motion;
           x[i] = motion ? to_scene<Dim>(motion->position(to_space<Dim>(reference[i]), middle))
                         : reference[i];
         }

@@ -34,7 +34,7 @@ class SolidState final : public Effect<Dim> {
 
   void apply(World<Dim>& world) override {
     ParticleSet<Dim>& set = world.set(set_);
-    const SolidParts parts(world);
+    const SolidParameters& parts = world.parameters().solids;
     const auto& x = set.vector(fields::position);
     const auto& reference = set.vector(fields::reference_position);
     const auto& volume0 = set.scalar(fields::reference_volume);
@@ -63,11 +63,11 @@ class SolidState final : public Effect<Dim> {
           to_space_tensor<Dim>(deformation_.frame(part[i]).rotation) * (Mat3::Identity() + grad) +
           out_of_plane();
       const double jacobian = 1 + volume_change(grad);
-      const Mat3 s = f * second_piola(grad, p.law) * f.transpose() / jacobian;
+      const Mat3 s = f * second_piola(grad, law_of(p)) * f.transpose() / jacobian;
       stress[i] << s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(1, 2), s(0, 2);
       const Mat3 deviator = s - s.trace() / 3 * Mat3::Identity();
       von_mises[i] = std::sqrt(1.5) * deviator.norm();
-      energy[i] = volume0[i] * strain_energy_density(grad, p.law);
+      energy[i] = volume0[i] * strain_energy_density(grad, law_of(p));
       volume[i] = volume0[i] * jacobian;
     });
   }

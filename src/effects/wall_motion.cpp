@@ -2,21 +2,15 @@
 #include <optional>
 #include <vector>
 
-#include "boundaries/boundary.h"
 #include "core/parallel.h"
+#include "deck/motion.h"
 #include "effects/effect.h"
 #include "effects/wall_records.h"
 #include "effects/wave_absorption.h"
+#include "sph/parameters.h"
 
 namespace sphgeo {
 namespace {
-
-/// The boundary of a wall particle's part, when it moves.
-const Motion* motion_of(const Model& model, std::int32_t part) {
-  const auto* wall =
-      dynamic_cast<const WallBoundary*>(model.boundaries[static_cast<std::size_t>(part)].get());
-  return wall && wall->motion ? &*wall->motion : nullptr;
-}
 
 /// A step of what a piston moves beside that to take up waves (see wave_absorption.cpp): zero for
 /// every other wall.
@@ -45,10 +39,9 @@ class WallMotion final : public Effect<Dim> {
     return {"wall_motion", Stage::predict, "prescribed", "moves walls as the deck says", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    for (std::size_t k = 0; k < world.model().boundaries.size(); ++k)
-      if (world.find("walls") && motion_of(world.model(), static_cast<std::int32_t>(k)))
-        return {std::make_unique<WallMotion>(),
-                "boundary '" + world.model().boundaries[k]->name + "' has a motion"};
+    for (const BoundaryMotion& wall : world.parameters().boundary_motions)
+      if (world.find("walls") && wall.motion)
+        return {std::make_unique<WallMotion>(), "boundary '" + wall.name + "' has a motion"};
     return {"no boundary has a motion"};
   }
 
@@ -66,8 +59,8 @@ class WallMotion final : public Effect<Dim> {
 
   void prepare(World<Dim>& world) override {
     walls_ = &world.set("walls");
-    for (std::size_t k = 0; k < world.model().boundaries.size(); ++k)
-      motions_.push_back(motion_of(world.model(), static_cast<std::int32_t>(k)));
+    for (const BoundaryMotion& wall : world.parameters().boundary_motions)
+      motions_.push_back(wall.motion);
   }
 
   void apply(World<Dim>& world) override {
@@ -86,9 +79,9 @@ class WallMotion final : public Effect<Dim> {
     for (std::size_t k = 0; k < motions_.size(); ++k) {
       if (!motions_[k]) continue;
       moments[k].emplace(*motions_[k], middle, end);
-      const auto& waves = motions_[k]->waves;
-      if (waves && waves->absorb)
-        extras[k] = Extra(PistonState(world, world.model().boundaries[k]->name), waves->direction,
+      const BoundaryMotion& wall = world.parameters().boundary_motions[k];
+      if (wall.absorbs_waves)
+        extras[k] = Extra(PistonState(world, wall.name), motions_[k]->waves->direction,
                           world.clock.dt_acoustic);
     }
     parallel_for(static_cast<Index>(moving_.size()), [&](Index place) {

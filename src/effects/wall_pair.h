@@ -60,7 +60,7 @@ struct WallPair {
   double slope;  ///< 1 / lattice_moment: the pressure gradient that the water's own sum balances
   double bulk;   ///< rho0 c0^2 times the volume of a water particle
 
-  WallPair(const WaterConstants& w, double h, double dp)
+  WallPair(const WaterParameters& w, double h, double dp)
       : kernel(h),
         riemann(w),
         inverse_sound(1 / w.sound_speed),

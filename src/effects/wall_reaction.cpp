@@ -35,7 +35,7 @@ class WallReaction final : public Effect<Dim> {
 
   void apply(World<Dim>& world) override {
     const WaterForceOnWall<Dim> pair{
-        WallPair<Dim>(WaterConstants::of(world), water_->smoothing_length(), water_->spacing())};
+        WallPair<Dim>(world.parameters().water, water_->smoothing_length(), water_->spacing())};
     auto& force = walls_->vector(fields::wall_force);
     parallel_for(walls_->size(), [&](Index i) { force[i].setZero(); });
     world.with_pair_precision([&](auto number) {

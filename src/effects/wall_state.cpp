@@ -1,5 +1,6 @@
 #include "effects/effect.h"
 #include "effects/wall_records.h"
+#include "sph/parameters.h"
 
 namespace sphgeo {
 namespace {
@@ -35,7 +36,7 @@ class WallState final : public Effect<Dim> {
   }
   void apply(World<Dim>& world) override {
     // What rests, under a pull that rests, is packed once.
-    if (packed_ && !moves_ && !world.model().body_force) return;
+    if (packed_ && !moves_ && !world.parameters().body_force) return;
     restore(world);
     ParticleSet<Dim>& walls = world.set("walls");
     auto& volume = walls.scalar(fields::volume);

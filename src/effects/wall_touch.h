@@ -110,7 +110,7 @@ std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const SkinMap<
                                          const std::vector<std::string>& solids,
                                          const std::vector<double>& bulk) {
   const ParticleSet<Dim>&skin = world.set("skin"), &walls = world.set("walls");
-  std::vector<WallTouch<Dim>> touch(world.model().bodies.size());
+  std::vector<WallTouch<Dim>> touch(world.parameters().solids.of.size());
   std::vector<Vec<Dim>> at(static_cast<std::size_t>(skin.size()));
   double most = 0;
   for (Index k = 0; k < skin.size(); ++k) {
@@ -141,9 +141,9 @@ std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const SkinMap<
       gap = std::min(gap, std::sqrt(r2));
     });
   for (std::size_t b = 0; b < touch.size(); ++b) {
-    const SolidMaterial* m = solid_of(world.model(), world.model().bodies[b]);
-    if (!m) continue;
-    touch[b].rigid = m->rigid();
+    const SolidPart& p = world.parameters().solids.of[b];
+    if (!p.is_solid) continue;
+    touch[b].rigid = p.rigid();
     touch[b].at_ease = half_space_sum(touch[b].kernel, touch[b].gap, walls.spacing());
   }
   // Rows that start face to face see a little more than the mean over all places: not to be pushed

@@ -88,7 +88,7 @@ class WaterContinuity final : public Effect<Dim> {
   template <bool Porous>
   void run(World<Dim>& world) {
     using Pair = ContinuityPair<Dim, Porous>;
-    const WaterConstants w = WaterConstants::of(world);
+    const WaterParameters& w = world.parameters().water;
     const Pair pair{Kernel<Dim>(world.set("water").smoothing_length()),
                     1 / (w.density * w.sound_speed), w.density * world.gravity()};
     const Field<double>* n = volume_share(world);

@@ -80,7 +80,7 @@ class WaterFraction final : public Effect<Dim> {
   }
 
   explicit WaterFraction(const World<Dim>& world)
-      : walls_(wall_sets(world)), deformable_(SoilParts(world).deformable) {}
+      : walls_(wall_sets(world)), deformable_(world.parameters().soil.deformable) {}
 
   std::string acts_on() const override { return "water near soil"; }
   // The places are those of before the transport shift, whose target volumes need this fraction:
@@ -104,7 +104,7 @@ class WaterFraction final : public Effect<Dim> {
   void prepare(World<Dim>& world) override {
     water_ = &world.set("water");
     soil_ = &world.set("soil");
-    floor_ = world.model().numerics.water_fraction_floor;
+    floor_ = world.parameters().numerics.water_fraction_floor;
     world.records("water", water_pore_record);
     world.records("soil", soil_pore_record);
   }
@@ -141,7 +141,7 @@ class WaterFraction final : public Effect<Dim> {
   void pack_pairs(World<Dim>& world) {
     auto& soil = pore_records<T>(world, "soil");
     auto& water = pore_records<T>(world, "water");
-    const SoilParts parts(world);
+    const SoilParameters& parts = world.parameters().soil;
     const auto& part = soil_->tag(fields::part);
     const auto& m = soil_->scalar(fields::mass);
     const auto& grains = water_->scalar(fields::soil_sum);
@@ -160,9 +160,9 @@ class WaterFraction final : public Effect<Dim> {
   template <class T>
   void pack_soil(World<Dim>& world) {
     auto& soil = pore_records<T>(world, "soil");
-    const SoilParts parts(world);
-    const double g = world.gravity().norm(), rho0 = water_->constant("density"),
-                 eta = water_->constant("viscosity");
+    const SoilParameters& parts = world.parameters().soil;
+    const double g = world.gravity().norm(), rho0 = world.parameters().water.density,
+                 eta = world.parameters().water.viscosity;
     const auto& part = soil_->tag(fields::part);
     const auto& m = soil_->scalar(fields::mass);
     const auto& n = soil_->scalar(fields::volume_fraction);
@@ -170,12 +170,10 @@ class WaterFraction final : public Effect<Dim> {
         drag;  // by body: Eq. 29 times (n^w)^2, and the two terms of Eq. 31
     for (const SoilPart& p : parts.of) {
       drag.push_back({0, 0, 0});
-      if (!p.material) continue;
-      const Soil& s = *p.material;
-      if (s.drag_law() == "darcy") drag.back()[0] = rho0 * g / *s.hydraulic_conductivity;
-      if (s.drag_law() == "ergun")
-        drag.back() = {0, s.drag_viscous * eta / (*s.grain_size * *s.grain_size),
-                       s.drag_inertial * rho0 / *s.grain_size};
+      if (p.drag == DragLaw::darcy) drag.back()[0] = rho0 * g / p.hydraulic_conductivity;
+      if (p.drag == DragLaw::ergun)
+        drag.back() = {0, p.drag_viscous * eta / (p.grain_size * p.grain_size),
+                       p.drag_inertial * rho0 / p.grain_size};
     }
     parallel_for(soil_->size(), [&](Index k) {
       T* slot = soil[k];
@@ -238,7 +236,7 @@ class WaterFraction final : public Effect<Dim> {
   template <class T>
   void soil_masses(World<Dim>& world) {
     const WeightedNumber<Dim> pair{Kernel<Dim>(water_->smoothing_length())};
-    const SoilParts parts(world);
+    const SoilParameters& parts = world.parameters().soil;
     const auto& part = soil_->tag(fields::part);
     const auto& m = soil_->scalar(fields::mass);
     auto& soil = pore_records<T>(world, "soil");

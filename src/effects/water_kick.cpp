@@ -65,8 +65,8 @@ class WaterKick final : public Effect<Dim> {
   std::size_t bytes() const override { return fastest_.capacity() * sizeof(double); }
 
   void limit(const World<Dim>& world, StepLimits& limits) const override {
-    const Numerics& n = world.model().numerics;
-    const WaterConstants w = WaterConstants::of(world);
+    const NumericsParameters& n = world.parameters().numerics;
+    const WaterParameters& w = world.parameters().water;
     const double h = water_->smoothing_length();
     const double speed = largest_speed(world);
     limits.note_speed("water", speed / w.sound_speed);

@@ -54,11 +54,10 @@ class WaterMomentum final : public Effect<Dim> {
             "gravity, pressure (Riemann) and viscosity between water particles", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    const ParticleSet<Dim>* water = world.find("water");
-    if (!water) return {"there is no water"};
+    if (!world.find("water")) return {"there is no water"};
     return {std::make_unique<WaterMomentum>(world.find("soil") != nullptr),
-            water->constant("viscosity") > 0 ? "there is water"
-                                             : "there is water; inviscid: no viscous term"};
+            world.parameters().water.viscosity > 0 ? "there is water"
+                                                   : "there is water; inviscid: no viscous term"};
   }
 
   explicit WaterMomentum(bool porous) : porous_(porous) {}
@@ -80,7 +79,7 @@ class WaterMomentum final : public Effect<Dim> {
   }
 
   void apply(World<Dim>& world) override {
-    const bool viscous = WaterConstants::of(world).viscosity > 0;
+    const bool viscous = world.parameters().water.viscosity > 0;
     if (porous_) viscous ? run<true, true>(world) : run<false, true>(world);
     else viscous ? run<true, false>(world) : run<false, false>(world);
   }
@@ -89,7 +88,7 @@ class WaterMomentum final : public Effect<Dim> {
   template <bool Viscous, bool Porous>
   void run(World<Dim>& world) {
     using Pair = MomentumPair<Dim, Viscous, Porous>;
-    const WaterConstants w = WaterConstants::of(world);
+    const WaterParameters& w = world.parameters().water;
     const double h = world.set("water").smoothing_length();
     const Vec<Dim> g = world.gravity();
     const Pair pair{Kernel<Dim>(h), RiemannFlux(w), 2 * w.viscosity, 0.01 * h * h};

@@ -1,32 +1,18 @@
 #pragma once
-// What the effects of the water phase share: constants, record layout, the Riemann flux.
+// What the effects of the water phase share: record layout, the Riemann flux.
 
 #include "effects/effect.h"
 #include "sph/gather.h"
 #include "sph/kernel.h"
+#include "sph/parameters.h"
 #include "sph/world.h"
 
 namespace sphgeo {
 
-/// Constants of the water phase, SI.
-struct WaterConstants {
-  double density;      ///< rho0
-  double sound_speed;  ///< c0
-  double viscosity;    ///< eta
-  double limiter;      ///< xi of Eq. 63
-
-  template <int Dim>
-  static WaterConstants of(const World<Dim>& world) {
-    const ParticleSet<Dim>& water = world.set("water");
-    return {water.constant("density"), water.constant("sound_speed"), water.constant("viscosity"),
-            world.model().numerics.limiter};
-  }
-};
-
 /// Whether the volume of the water follows the porosity of soil (Eq. 27).
 template <int Dim>
 bool volume_follows_porosity(const World<Dim>& world) {
-  return world.find("soil") && world.model().numerics.pore_water != "constant_volume";
+  return world.parameters().water.follows_porosity;
 }
 
 /// n^w of the water (Eq. 27); null where its volume does not follow it.
@@ -73,7 +59,7 @@ struct RiemannFlux {
   double inverse_sound;  ///< 1 / c0
   double limiter;        ///< xi
 
-  explicit RiemannFlux(const WaterConstants& w)
+  explicit RiemannFlux(const WaterParameters& w)
       : impedance(w.density * w.sound_speed),
         inverse_sound(1.0 / w.sound_speed),
         limiter(w.limiter) {}

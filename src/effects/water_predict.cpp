@@ -46,7 +46,7 @@ class WaterPredict final : public Effect<Dim> {
   }
 
   void apply(World<Dim>& world) override {
-    const WaterConstants w = WaterConstants::of(world);
+    const WaterParameters& w = world.parameters().water;
     const double half = 0.5 * world.clock.dt_acoustic, c2 = w.sound_speed * w.sound_speed;
     auto& rho = water_->scalar(fields::density);
     auto& x = water_->vector(fields::position);
@@ -80,8 +80,8 @@ class WaterPredict final : public Effect<Dim> {
   }
 
   void bounds(const World<Dim>& world, std::vector<FieldBound>& watched) const override {
-    const double rho0 = water_->constant("density"),
-                 most = world.model().numerics.density_bound * rho0;
+    const double rho0 = world.parameters().water.density,
+                 most = world.parameters().numerics.density_bound * rho0;
     watched.push_back({"water", &fields::density, rho0 - most, rho0 + most,
                        "pressures of the order of rho0 c0^2: bodies that start inside each other, "
                        "or a sound speed that is too low"});

@@ -32,7 +32,7 @@ class WaterPressure final : public Effect<Dim> {
   }
   void prepare(World<Dim>& world) override { water_ = &world.set("water"); }
   void apply(World<Dim>& world) override {
-    const WaterConstants w = WaterConstants::of(world);
+    const WaterParameters& w = world.parameters().water;
     auto& p = water_->scalar(fields::pressure);
     auto& volume = water_->scalar(fields::volume);
     const auto& rho = water_->scalar(fields::density);

@@ -119,8 +119,8 @@ class WaterReinitialization final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
-    const Numerics& n = world.model().numerics;
-    if (n.density_reinitialization != "summation" && !n.transport_velocity &&
+    const NumericsParameters& n = world.parameters().numerics;
+    if (n.density_reinitialization != DensityReinitialization::summation && !n.transport_velocity &&
         !volume_follows_porosity(world))
       return {
           "numerics switches off both density_reinitialization by summation and "
@@ -133,7 +133,7 @@ class WaterReinitialization final : public Effect<Dim> {
     need_volume_share(world, volume_);
     if (!porous_) return;
     volume_.fields.push_back({"water", &fields::gradient_scale, Access::update});
-    if (world.model().numerics.transport_velocity)
+    if (world.parameters().numerics.transport_velocity)
       volume_.fields.push_back({"water", &fields::acceleration, Access::read});
     volume_.fields.push_back({"water", &fields::drag_linear, Access::read});
     volume_.fields.push_back({"water", &fields::drag_quadratic, Access::read});
@@ -153,7 +153,7 @@ class WaterReinitialization final : public Effect<Dim> {
 
   void prepare(World<Dim>& world) override {
     water_ = &world.set("water");
-    if (world.model().numerics.transport_velocity) world.records("water", 1);
+    if (world.parameters().numerics.transport_velocity) world.records("water", 1);
     const Kernel<Dim> kernel(water_->smoothing_length());
     lattice_ = lattice_sums(kernel, water_->spacing()).number;
     moment_ = lattice_sums(kernel, water_->spacing()).moment;
@@ -161,10 +161,10 @@ class WaterReinitialization final : public Effect<Dim> {
   }
 
   void apply(World<Dim>& world) override {
-    const Numerics& n = world.model().numerics;
+    const NumericsParameters& n = world.parameters().numerics;
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      const bool summation = n.density_reinitialization == "summation";
+      const bool summation = n.density_reinitialization == DensityReinitialization::summation;
       if (porous_) sum_pairs<T, true>(world, summation, n.transport_velocity);
       else sum_pairs<T, false>(world, summation, n.transport_velocity);
       if (n.transport_velocity) shift<T>(world);
@@ -177,7 +177,7 @@ class WaterReinitialization final : public Effect<Dim> {
   template <class T, bool Porous>
   void sum_pairs(World<Dim>& world, bool summation, bool transport) {
     using Sums = std::array<Arrangement<Dim>, block_size>;
-    const double rho0 = water_->constant("density");
+    const double rho0 = world.parameters().water.density;
     const auto& m = water_->scalar(fields::mass);
     const ArrangementPair<Dim, Porous> pair{Kernel<Dim>(water_->smoothing_length())};
     const ArrangementPair<Dim, false> wall_pair{pair.kernel};
@@ -185,7 +185,7 @@ class WaterReinitialization final : public Effect<Dim> {
     const auto at_rest = [&](Index i) { return Porous ? m[i] / (rho0 * (*n)[i]) : m[i] / rho0; };
     auto& rho = water_->scalar(fields::density);
     Field<double>* scale = Porous ? &water_->scalar(fields::gradient_scale) : nullptr;
-    const bool by_target = world.model().numerics.transport_target_volume;
+    const bool by_target = world.parameters().numerics.transport_target_volume;
     auto& records = world.records("water").template get<T>();
     // The volume at rest, so that compression does not feed back on the arrangement.
     parallel_for(water_->size(), [&](Index i) {
@@ -270,9 +270,9 @@ class WaterReinitialization final : public Effect<Dim> {
                  speed = water_->vector(fields::velocity)[i].norm();
     const double drag =
         water_->scalar(fields::drag_linear)[i] + water_->scalar(fields::drag_quadratic)[i] * speed;
-    const double evening = n * water_->constant("sound_speed") / water_->smoothing_length();
+    const double evening = n * world.parameters().water.sound_speed / water_->smoothing_length();
     const double steps =
-        1e-3 * evening * evening * water_->constant("density") * world.clock.dt_advection;
+        1e-3 * evening * evening * world.parameters().water.density * world.clock.dt_advection;
     return steps < drag ? steps / drag : 1.0;
   }
 
@@ -293,7 +293,7 @@ class WaterReinitialization final : public Effect<Dim> {
   // P^p of Eqs. 88 and 89 on the sum of gradients: where the porosity changes within a smoothing
   // length, the spacing changes with it, and the shift would even out what is meant to be uneven.
   Vec<Dim> projected(const World<Dim>& world, const Arrangement<Dim>& s) const {
-    const Numerics& n = world.model().numerics;
+    const NumericsParameters& n = world.parameters().numerics;
     if (!n.transport_projection ||
         water_->smoothing_length() * s.fraction.norm() <= n.transport_projection_threshold)
       return s.gradient;
@@ -312,8 +312,9 @@ class WaterReinitialization final : public Effect<Dim> {
   void shift(World<Dim>& world) {
     using Pair = SurfacePair<Dim>;
     const double h = water_->smoothing_length();
-    const double factor = 2 * world.model().numerics.transport_coefficient * h * h;
-    const bool tangential = world.model().numerics.transport_at_surface == "tangential";
+    const double factor = 2 * world.parameters().numerics.transport_coefficient * h * h;
+    const bool tangential =
+        world.parameters().numerics.transport_at_surface == SurfaceTransport::tangential;
     auto& x = water_->vector(fields::position);
     const Field<double>* share = volume_share(world);
     const Field<Vec<Dim>>* a = porous_ ? &water_->vector(fields::acceleration) : nullptr;
@@ -321,7 +322,7 @@ class WaterReinitialization final : public Effect<Dim> {
                                       ? &water_->vector(fields::drag_acceleration)
                                       : nullptr;
     auto& rho = water_->scalar(fields::density);
-    const double sound = water_->constant("sound_speed");
+    const double sound = world.parameters().water.sound_speed;
     const auto& first = world.records("water", 0).template get<T>();
     const auto& second = world.records("water", 1).template get<T>();
     gather<Pair::template Sums>(world.list("water", "water"), first, with(first, second),

@@ -52,7 +52,7 @@ class WaterWallContinuity final : public Effect<Dim> {
 
   void apply(World<Dim>& world) override {
     const WallDivergence<Dim> pair{
-        WallPair<Dim>(WaterConstants::of(world), water_->smoothing_length(), water_->spacing())};
+        WallPair<Dim>(world.parameters().water, water_->smoothing_length(), water_->spacing())};
     const auto& rho = water_->scalar(fields::density);
     auto& rate = water_->scalar(fields::density_rate);
     const Field<double>* n = volume_share(world);

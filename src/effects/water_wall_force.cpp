@@ -80,7 +80,7 @@ class WaterWallForce final : public Effect<Dim> {
   template <class Pair>
   void run(World<Dim>& world) {
     constexpr bool porous = std::is_same_v<Pair, WallForceOnPoreWater<Dim>>;
-    const WaterConstants w = WaterConstants::of(world);
+    const WaterParameters& w = world.parameters().water;
     const Pair pair{WallPair<Dim>(w, water_->smoothing_length(), water_->spacing())};
     const Field<double>* n = volume_share(world);
     const Field<double>* scale = gradient_scale(world);

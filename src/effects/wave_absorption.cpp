@@ -7,19 +7,14 @@
 #include <optional>
 #include <vector>
 
-#include "boundaries/boundary.h"
+#include "deck/motion.h"
 #include "effects/effect.h"
 #include "sph/kernel.h"
+#include "sph/parameters.h"
 #include "sph/surface_height.h"
 
 namespace sphgeo {
 namespace {
-
-const WallBoundary* absorbing(const BoundarySpec* boundary) {
-  const auto* wall = dynamic_cast<const WallBoundary*>(boundary);
-  return wall && wall->motion && wall->motion->waves && wall->motion->waves->absorb ? wall
-                                                                                    : nullptr;
-}
 
 /// The speed by which a piston takes up waves that come back to it: that of water under a wave as
 /// high as what gauges before the piston see beyond its own waves (Schaeffer and Klopman 2000).
@@ -27,8 +22,9 @@ const WallBoundary* absorbing(const BoundarySpec* boundary) {
 template <int Dim>
 class WaveAbsorption final : public Effect<Dim> {
  public:
-  explicit WaveAbsorption(const WallBoundary& piston)
-      : piston_(piston), waves_(*piston.motion->waves) {}
+  /// The part is the number of the piston among the boundaries.
+  WaveAbsorption(const BoundaryMotion& piston, std::int32_t part)
+      : piston_(piston), part_(part), waves_(*piston.motion->waves) {}
   static EffectInfo info() {
     return {"wave_absorption", Stage::exchange, "prescribed",
             "what a piston moves to take up waves that come back to it", false};
@@ -36,10 +32,12 @@ class WaveAbsorption final : public Effect<Dim> {
   static Binding<Dim> bind(const World<Dim>& world) {
     Binding<Dim> binding("no boundary takes up waves");
     if (!world.find("water") || !world.find("walls")) return binding;
-    for (const auto& boundary : world.model().boundaries)
-      if (const WallBoundary* piston = absorbing(boundary.get())) {
-        binding.effects.push_back(std::make_unique<WaveAbsorption>(*piston));
-        binding.because = "boundary '" + piston->name + "' takes up waves";
+    const std::vector<BoundaryMotion>& walls = world.parameters().boundary_motions;
+    for (std::size_t k = 0; k < walls.size(); ++k)
+      if (walls[k].absorbs_waves) {
+        binding.effects.push_back(
+            std::make_unique<WaveAbsorption>(walls[k], static_cast<std::int32_t>(k)));
+        binding.because = "boundary '" + walls[k].name + "' takes up waves";
       }
     return binding;
   }
@@ -72,7 +70,8 @@ class WaveAbsorption final : public Effect<Dim> {
     // Not in prepare(): a run that goes on has no particles yet when it gets there.
     if (gauges_.empty()) place_gauges(world);
     const std::optional<double> level =
-        level_before_it(motion.position(front_, now) + state_->shift * waves_.direction);
+        level_before_it(world.parameters().water.density,
+                        motion.position(front_, now) + state_->shift * waves_.direction);
     if (!level) return;
     const double distance =
         waves_.direction.dot(motion.position(front_, now) - front_) + state_->shift + ahead();
@@ -112,9 +111,7 @@ class WaveAbsorption final : public Effect<Dim> {
     const Vec3 along = waves_.direction.cross(Vec3::UnitZ());
     double front = -INFINITY, low = INFINITY, high = -INFINITY;
     for (Index i = 0; i < walls.size(); ++i) {
-      if (world.model().boundaries[static_cast<std::size_t>(walls.tag(fields::part)[i])].get() !=
-          &piston_)
-        continue;
+      if (walls.tag(fields::part)[i] != part_) continue;
       const Vec3 x = to_space<Dim>(walls.vector(fields::reference_position)[i]);
       front = std::max(front, waves_.direction.dot(x));
       low = std::min(low, along.dot(x));
@@ -129,11 +126,11 @@ class WaveAbsorption final : public Effect<Dim> {
   }
 
   /// Mean height of the surface at the gauges that have water.
-  std::optional<double> level_before_it(const Vec3& front) const {
+  std::optional<double> level_before_it(double density, const Vec3& front) const {
     const Vec3 at = front + ahead() * waves_.direction;
     const auto& x = water_->vector(fields::position);
     const auto& mass = water_->scalar(fields::mass);
-    const double reach = kernel_.support(), density = water_->constant("density");
+    const double reach = kernel_.support();
     std::vector<std::vector<Index>> near(gauges_.size());
     for (Index i = 0; i < water_->size(); ++i) {
       const Vec3 p = to_space<Dim>(x[i]);
@@ -167,7 +164,8 @@ class WaveAbsorption final : public Effect<Dim> {
     return found > 0 ? std::optional(sum / found) : std::nullopt;
   }
 
-  const WallBoundary& piston_;
+  const BoundaryMotion& piston_;
+  std::int32_t part_;
   const Waves& waves_;
   Kernel<Dim> kernel_;
   Vec3 front_ = Vec3::Zero();  ///< a point of the piston's face at rest

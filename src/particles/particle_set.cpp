@@ -116,13 +116,6 @@ FieldBase& ParticleSet<Dim>::require(const FieldSpec& spec) {
 }
 
 template <int Dim>
-double ParticleSet<Dim>::constant(const std::string& key) const {
-  const auto it = constants_.find(key);
-  if (it == constants_.end()) throw std::logic_error("set " + name_ + " has no constant " + key);
-  return it->second;
-}
-
-template <int Dim>
 void ParticleSet<Dim>::resize(Index n) {
   size_ = n;
   for (auto& [name, field] : fields_) field->resize(n);

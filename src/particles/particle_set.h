@@ -41,10 +41,6 @@ class ParticleSet {
   const Field<std::int32_t>& tag(const FieldSpec& s) const { return typed<std::int32_t>(s); }
   const Field<Id>& ids() const { return typed<Id>(fields::id); }
 
-  /// A material constant of the set, SI; throws std::logic_error when there is none of that name.
-  double constant(const std::string& key) const;
-  void set_constant(const std::string& key, double value) { constants_[key] = value; }
-
   /// All fields by name, in alphabetical order.
   const std::map<std::string, std::unique_ptr<FieldBase>>& fields() const { return fields_; }
 
@@ -70,7 +66,6 @@ class ParticleSet {
   std::string name_, phase_;
   double spacing_, h_;
   Index size_ = 0;
-  std::map<std::string, double> constants_;
   std::map<std::string, std::unique_ptr<FieldBase>> fields_;
   // One per type of field: sorting changes places with it, and allocates nothing.
   std::map<FieldType, std::unique_ptr<FieldBase>> spares_;

@@ -8,6 +8,8 @@
 #include <set>
 #include <stdexcept>
 
+#include "sph/parameters.h"
+
 namespace sphgeo {
 namespace {
 
@@ -65,7 +67,7 @@ template <int Dim>
 void Plan<Dim>::bind(const std::vector<Wish>& wishes) {
   std::vector<PlannedEffect<Dim>> supporting;
   for (const auto& entry : EffectRegistry::all()) {
-    const auto& off = world_.model().without;
+    const auto& off = world_.parameters().without;
     if (std::find(off.begin(), off.end(), entry.info.name) != off.end()) {
       unused_.push_back({entry.info.name, "switched off by the deck: " + entry.info.when_off});
       continue;
@@ -201,7 +203,7 @@ StepLimits Plan<Dim>::limits() const {
   // Where solids are alone, the acoustic step is theirs.
   if (limits.acoustic == std::numeric_limits<double>::infinity())
     limits.lower_acoustic(limits.solid, "solids");
-  const double factor = world_.model().numerics.time_step_factor;
+  const double factor = world_.parameters().numerics.time_step_factor;
   limits.advection *= factor;
   limits.acoustic *= factor;
   limits.solid *= factor;

@@ -8,6 +8,7 @@
 #include "core/types.h"
 #include "deck/model.h"
 #include "particles/fields.h"
+#include "sph/parameters.h"
 
 namespace sphgeo {
 
@@ -22,13 +23,13 @@ class SceneView {
  public:
   virtual ~SceneView() = default;
   virtual const Model& model() const = 0;
+  virtual const Parameters& parameters() const = 0;
   virtual double time() const = 0;
   virtual bool has_set(const std::string& set) const = 0;
   virtual bool has_field(const std::string& set, const FieldSpec& field) const = 0;
   virtual Index size(const std::string& set) const = 0;
   virtual double spacing(const std::string& set) const = 0;
   virtual double smoothing_length(const std::string& set) const = 0;
-  virtual double constant(const std::string& set, const std::string& key) const = 0;
   /// One value of a field of a set; throws std::logic_error when the set has no such field.
   virtual std::function<double(Index)> scalar(const std::string& set,
                                               const FieldSpec& field) const = 0;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "materials/soil.h"
+#include "materials/drucker_prager.h"
 #include "probes/scene_view.h"
 
 namespace sphgeo {
@@ -28,9 +28,8 @@ inline Energies water_energies(const SceneView& scene) {
   const auto rho = scene.scalar("water", fields::density);
   const auto x = scene.vector("water", fields::position);
   const auto v = scene.vector("water", fields::velocity);
-  const double c = scene.constant("water", "sound_speed"),
-               rho0 = scene.constant("water", "density");
-  const Vec3 g = scene.model().gravity;
+  const double c = scene.parameters().water.sound_speed, rho0 = scene.parameters().water.density;
+  const Vec3 g = scene.parameters().gravity;
   e.kinetic = ordered_sum(n, [&](Index i) { return 0.5 * m(i) * v(i).squaredNorm(); });
   e.potential = ordered_sum(n, [&](Index i) { return -m(i) * g.dot(x(i)); });
   // The integral of p / rho^2 d rho from rho0, with p of Eq. 26.
@@ -48,15 +47,13 @@ inline Energies soil_energies(const SceneView& scene) {
   const auto x = scene.vector("soil", fields::position), v = scene.vector("soil", fields::velocity);
   const auto stress = scene.tensor("soil", fields::stress);
   const auto part = scene.tag("soil", fields::part);
-  const Model& model = scene.model();
-  const Vec3 g = model.gravity;
+  const Vec3 g = scene.parameters().gravity;
   e.kinetic = ordered_sum(n, [&](Index i) { return 0.5 * m(i) * v(i).squaredNorm(); });
   e.potential = ordered_sum(n, [&](Index i) { return -m(i) * g.dot(x(i)); });
   std::vector<std::pair<double, double>> moduli;  // 2 G, 18 K by body
-  for (const Body& b : model.bodies) {
-    const auto* soil = dynamic_cast<const Soil*>(model.material(b.material));
-    moduli.emplace_back(soil ? 2 * soil->shear_modulus() : 1, soil ? 18 * soil->bulk_modulus() : 1);
-  }
+  for (const SoilPart& p : scene.parameters().soil.of)
+    moduli.emplace_back(p.is_soil ? 2 * p.constants.shear : 1,
+                        p.is_soil ? 18 * p.constants.bulk : 1);
   e.internal = ordered_sum(n, [&](Index i) {
     const Sym3 s = stress(i);
     const double numbers[6] = {s[0], s[1], s[2], s[3], s[4], s[5]};

@@ -54,7 +54,7 @@ inline Energies solid_energies(const SceneView& scene, const std::string& set,
   const auto m = scene.scalar(set, fields::mass);
   const auto x = scene.vector(set, fields::position), v = scene.vector(set, fields::velocity);
   const auto part = scene.tag(set, fields::part);
-  const Vec3 g = scene.model().gravity;
+  const Vec3 g = scene.parameters().gravity;
   const auto share = [&](Index i) { return body < 0 || part(i) == body ? 1.0 : 0.0; };
   e.kinetic = ordered_sum(n, [&](Index i) { return share(i) * 0.5 * m(i) * v(i).squaredNorm(); });
   e.potential = ordered_sum(n, [&](Index i) { return -share(i) * m(i) * g.dot(x(i)); });

@@ -14,6 +14,7 @@
 #include "materials/water.h"
 #include "relax/pore_water.h"
 #include "scene/join_walls.h"
+#include "scene/parameters.h"
 #include "scene/skin.h"
 #include "scene/soil.h"
 #include "scene/solid.h"
@@ -105,9 +106,6 @@ void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
   if (!water || !has_water(model)) return;
   ParticleSet<Dim>& set =
       scene.world->add_set("water", "water", model.resolution, water_smoothing_length(model), true);
-  set.set_constant("density", water->density);
-  set.set_constant("viscosity", water->viscosity);
-  set.set_constant("sound_speed", scene.sound.value);
   for (const FieldSpec* f : {&fields::mass, &fields::density, &fields::density_rate})
     set.require(*f);
   if (fill == Filling::none) return;
@@ -292,7 +290,9 @@ Aabb scene_box(const Model& model) {
 template <int Dim>
 Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling) {
   Scene<Dim> scene;
-  scene.world = std::make_unique<World<Dim>>(model);
+  // What follows from the filling is added below; then nobody changes it any more.
+  const auto parameters = std::make_shared<Parameters>(compile_parameters(model));
+  scene.world = std::make_unique<World<Dim>>(model, parameters);
   scene.sound = water_sound_speed(model, water_box(model), scene_box(model));
   if (has_water(model) && !(scene.sound.value > 0)) {
     found.error("E112", model.place_of("materials"), "materials",
@@ -300,8 +300,9 @@ Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling) 
                 "give max_speed or sound_speed of the water");
     scene.sound.value = 1;
   }
+  parameters->water.sound_speed = scene.sound.value;
   add_water(scene, model, filling, found);
-  add_soil(scene, model, filling, found);
+  parameters->soil = compile_soil(model, add_soil(scene, model, filling, found));
   add_solids(scene, model, filling, found);
   add_walls(scene, model, filling, found);
   add_skin(scene, model, filling);

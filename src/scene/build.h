@@ -8,6 +8,7 @@
 
 #include "boundaries/boundary.h"
 #include "core/diagnostic.h"
+#include "deck/model.h"
 #include "relax/pore_water.h"
 #include "sph/world.h"
 

@@ -129,8 +129,10 @@ bool has_soil(const Model& model) {
 }
 
 template <int Dim>
-void add_soil(Scene<Dim>& scene, const Model& model, Filling filling, Diagnostics& found) {
-  if (!has_soil(model)) return;
+std::vector<double> add_soil(Scene<Dim>& scene, const Model& model, Filling filling,
+                             Diagnostics& found) {
+  std::vector<double> densities(model.bodies.size(), 0);
+  if (!has_soil(model)) return densities;
   ParticleSet<Dim>& set =
       scene.world->add_set("soil", "soil", model.resolution, soil_smoothing_length(model), true);
   for (const FieldSpec* f :
@@ -146,8 +148,7 @@ void add_soil(Scene<Dim>& scene, const Model& model, Filling filling, Diagnostic
     if (!soil) continue;
     // Also for a resumed run: the reference density is that of these particles.
     const BodyPoints points = fill_body(model.bodies[b], model);
-    set.set_constant("density." + std::to_string(b),
-                     soil->density * mean_fraction(model.bodies[b], *soil, points));
+    densities[b] = soil->density * mean_fraction(model.bodies[b], *soil, points);
     if (filling == Filling::none) continue;
     const std::string path = fmt::format("bodies[{}].shape", b);
     if (points.at.empty())
@@ -159,9 +160,10 @@ void add_soil(Scene<Dim>& scene, const Model& model, Filling filling, Diagnostic
     scene.body_particles.emplace_back(model.bodies[b].name, static_cast<Index>(points.at.size()));
     fill_one(set, model, b, *soil, points, found);
   }
+  return densities;
 }
 
-template void add_soil<2>(Scene<2>&, const Model&, Filling, Diagnostics&);
-template void add_soil<3>(Scene<3>&, const Model&, Filling, Diagnostics&);
+template std::vector<double> add_soil<2>(Scene<2>&, const Model&, Filling, Diagnostics&);
+template std::vector<double> add_soil<3>(Scene<3>&, const Model&, Filling, Diagnostics&);
 
 }  // namespace sphgeo

@@ -14,6 +14,7 @@ class WorldView final : public SceneView {
   explicit WorldView(const World<Dim>& world) : world_(world) {}
 
   const Model& model() const override { return world_.model(); }
+  const Parameters& parameters() const override { return world_.parameters(); }
   double time() const override { return world_.clock.time; }
   bool has_set(const std::string& set) const override { return world_.find(set) != nullptr; }
   bool has_field(const std::string& set, const FieldSpec& field) const override {
@@ -23,9 +24,6 @@ class WorldView final : public SceneView {
   double spacing(const std::string& set) const override { return world_.set(set).spacing(); }
   double smoothing_length(const std::string& set) const override {
     return world_.set(set).smoothing_length();
-  }
-  double constant(const std::string& set, const std::string& key) const override {
-    return world_.set(set).constant(key);
   }
   std::function<double(Index)> scalar(const std::string& set,
                                       const FieldSpec& field) const override {

@@ -187,7 +187,7 @@ void Guard<Dim>::check_bounds(bool note) {
 
 template <int Dim>
 void Guard<Dim>::check_lost() {
-  const double budget = world_.model().numerics.max_lost_fraction;
+  const double budget = world_.parameters().numerics.max_lost_fraction;
   for (const auto& [name, lost] : world_.lost()) {
     const auto inside = in_walls_.find(name);
     const Index stuck = inside == in_walls_.end() ? 0 : inside->second;
@@ -263,22 +263,16 @@ std::string Guard<Dim>::writer_of(const std::string& set, const FieldSpec& field
 template <int Dim>
 std::string Guard<Dim>::suspect(const ParticleSet<Dim>& set, Index i,
                                 const std::string& look_for) const {
-  const Model& model = world_.model();
+  const Parameters& parameters = world_.parameters();
   const auto part = static_cast<std::size_t>(set.tag(fields::part)[i]);
   const bool wall = set.name() == "walls";
-  const std::string path = fmt::format("{}[{}]", wall ? "boundaries" : "bodies", part);
-  const Place at = model.place_of(path);
-  const std::string name =
-      wall ? (part < model.boundaries.size() ? model.boundaries[part]->name : "")
-           : (part < model.bodies.size() ? model.bodies[part].name : "");
-  std::string out =
-      name.empty() ? "; it has entered through a boundary"
-                   : fmt::format("; it belongs to {} '{}' ({}:{}:{})", wall ? "boundary" : "body",
-                                 name, at.file, at.line, at.column);
-  if (world_.model().body_force && !world_.pull(set.vector(fields::position)[i]).allFinite()) {
-    const Place force = model.place_of("body_force");
-    out += fmt::format("; body_force is not finite there ({}:{}:{})", force.file, force.line,
-                       force.column);
+  const std::vector<Origin>& origins = wall ? parameters.boundaries : parameters.bodies;
+  std::string out = part < origins.size()
+                        ? fmt::format("; it belongs to {} '{}' ({})", wall ? "boundary" : "body",
+                                      origins[part].name, origins[part].place)
+                        : "; it has entered through a boundary";
+  if (parameters.body_force && !world_.pull(set.vector(fields::position)[i]).allFinite()) {
+    out += "; body_force is not finite there (" + parameters.body_force_place + ")";
   } else if (!look_for.empty()) {
     out += "; likely: " + look_for;
   } else if (world_.clock.advection_steps < 3) {

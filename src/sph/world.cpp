@@ -7,6 +7,8 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "deck/expression.h"
+#include "sph/parameters.h"
 
 namespace sphgeo {
 namespace {
@@ -25,16 +27,17 @@ std::span<const Id> ids_of(const ParticleSet<Dim>& set) {
 }  // namespace
 
 template <int Dim>
-World<Dim>::World(const Model& model)
+World<Dim>::World(const Model& model, std::shared_ptr<const Parameters> parameters)
     : model_(model),
-      gravity_(to_scene<Dim>(model.gravity)),
-      single_(model.numerics.pair_precision == "single"),
-      frozen_(model.numerics.pair_geometry == "frozen") {}
+      parameters_(std::move(parameters)),
+      gravity_(to_scene<Dim>(parameters_->gravity)),
+      single_(parameters_->numerics.pair_precision == PairPrecision::single),
+      frozen_(parameters_->numerics.pair_geometry == PairGeometry::frozen) {}
 
 template <int Dim>
 Vec<Dim> World<Dim>::pull(const Vec<Dim>& at) const {
-  if (!model_.body_force) return gravity_;
-  const auto& f = *model_.body_force;
+  if (!parameters_->body_force) return gravity_;
+  const VectorFormula& f = *parameters_->body_force;
   const Vec3 place = to_space<Dim>(at);
   return gravity_ + to_scene<Dim>(Vec3(f[0](place, clock.time), f[1](place, clock.time),
                                        f[2](place, clock.time)));
@@ -109,7 +112,8 @@ void World<Dim>::remove_lost(ParticleSet<Dim>& set) {
   for (Index i = 0; i < set.size(); ++i) {
     if (!outside(i)) continue;
     const bool lost = x[i].allFinite();  // what has no place at all has not left: it is broken
-    if (lost && model_.numerics.outside != "stop" && set.phase() != "solid") continue;
+    if (lost && parameters_->numerics.outside != OutsideDomain::stop && set.phase() != "solid")
+      continue;
     const Vec3 at = to_space<Dim>(x[i]);
     throw UnstableError(
         lost ? fmt::format("particle {} of set '{}' left the domain at ({:.4g}, {:.4g}, {:.4g}) m, "
@@ -148,13 +152,6 @@ void World<Dim>::rearrange() {
   for (auto& [key, list] : lists_) build_list(key, list, places_of(set(key.first)));
 }
 
-template <int Dim>
-bool World<Dim>::is_rigid(std::int32_t part) const {
-  const MaterialSpec* material =
-      model_.material(model_.bodies[static_cast<std::size_t>(part)].material);
-  return material && material->type == "rigid";
-}
-
 // Solids are sorted once, by their reference positions, which also find their neighbors for good;
 // the grid is that of the places they are at.
 template <int Dim>
@@ -178,8 +175,9 @@ void World<Dim>::arrange_solids(ParticleSet<Dim>& set) {
     if (list != reference_lists_.end()) {
       list->second.template build<Dim>(places(), rest, 2 * set.smoothing_length(), Pairing::within);
       const auto& part = set.tag(fields::part);
+      const SolidParameters& solids = parameters_->solids;
       list->second.filter(
-          [&](Index i, Index j) { return part[i] == part[j] && !is_rigid(part[i]); });
+          [&](Index i, Index j) { return part[i] == part[j] && !solids[part[i]].rigid(); });
     }
   }
   grids_[set.name()].build(places_of(set), frame_, reach(), ids_of(set));

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "deck/model.h"
 #include "particles/particle_set.h"
 #include "sph/cell_grid.h"
 #include "sph/fixed_point.h"
@@ -18,6 +17,9 @@
 #include "sph/records.h"
 
 namespace sphgeo {
+
+struct Model;
+struct Parameters;
 
 /// The clocks of Algorithm 2.
 struct Clock {
@@ -66,11 +68,14 @@ struct Exchanged {
 template <int Dim>
 class World {
  public:
-  explicit World(const Model& model);
+  /// The model must outlive the world.
+  World(const Model& model, std::shared_ptr<const Parameters> parameters);
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
   const Model& model() const { return model_; }
+  /// What the deck says to the effects; complete when the scene is built.
+  const Parameters& parameters() const { return *parameters_; }
   const Vec<Dim>& gravity() const { return gravity_; }  ///< m/s2
   /// Gravity and the deck's body force at a place, now, m/s2.
   Vec<Dim> pull(const Vec<Dim>& at) const;
@@ -155,7 +160,6 @@ class World {
   std::vector<Vec<Dim>> arranged_places(const std::string& set) const;
 
  private:
-  bool is_rigid(std::int32_t part) const;
   void arrange_solids(ParticleSet<Dim>& set);
   void remove_lost(ParticleSet<Dim>& set);
   void sort(ParticleSet<Dim>& set, std::span<const Vec<Dim>> at);
@@ -164,6 +168,7 @@ class World {
   double reach() const;
 
   const Model& model_;
+  std::shared_ptr<const Parameters> parameters_;
   Vec<Dim> gravity_;
   bool single_, frozen_;
   std::vector<std::unique_ptr<ParticleSet<Dim>>> sets_;

@@ -9,7 +9,7 @@ using namespace sphgeo;
 namespace {
 
 constexpr double rho = 1000, g = 9.81, dp = 0.1, h = 1.8 * dp, volume = dp * dp;
-const WaterConstants constants{rho, 30.0, 2.0, 3.0};
+const WaterParameters constants{rho, 30.0, 2.0, 3.0};
 const WallPair<2> pair(constants, h, dp);
 // The wall's pressure gradient: rho g over the kernel's lattice moment, see WallPair.
 const double gradient = rho * g * pair.slope;

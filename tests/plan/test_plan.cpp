@@ -27,7 +27,7 @@ const char* const empty_deck =
 // A world with one set of two particles, named after the scenario.
 struct FakeWorld {
   Model model = read_deck_text(empty_deck);
-  World<2> world{model};
+  World<2> world{model, std::make_shared<Parameters>()};
   explicit FakeWorld(const std::string& scenario) {
     world.add_set(scenario, "water", 0.1, 0.13, true).resize(2);
     world.set_domain(Vec<2>::Constant(-1), Vec<2>::Constant(1));

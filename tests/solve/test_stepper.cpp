@@ -222,7 +222,7 @@ TEST_SUITE("solve") {
       for (Index i = 0; i < v.size(); ++i) fastest = std::max(fastest, v[i].norm());
       REQUIRE(fastest > 0.1);
       return rig.model.numerics.cfl_acoustic * rig.water().smoothing_length() /
-             (rig.water().constant("sound_speed") + fastest);
+             (rig.world.parameters().water.sound_speed + fastest);
     };
     CHECK(rig.plan->limits().acoustic == doctest::Approx(expected()).epsilon(1e-14));
     for (int k = 0; k < 3; ++k) {
