@@ -84,15 +84,16 @@ void print_plan(const nlohmann::ordered_json& j) {
 
 /// The cost of a run; with the time unless `--no-calibrate`. Advances the world.
 template <int Dim>
-std::optional<Forecast> forecast_of(World<Dim>& world, Plan<Dim>& plan, const SoundSpeed& sound,
-                                    const std::vector<Wish>& wishes, std::uint64_t base,
-                                    const CheckOptions& options, clock_type::time_point start) {
+std::optional<Forecast> forecast_of(const Model& model, World<Dim>& world, Plan<Dim>& plan,
+                                    const SoundSpeed& sound, const std::vector<Wish>& wishes,
+                                    std::uint64_t base, const CheckOptions& options,
+                                    clock_type::time_point start) {
   if (world.sets().empty()) return std::nullopt;
   const double started = std::chrono::duration<double>(clock_type::now() - start).count();
-  const ForecastBasis basis(world, plan, sound, wishes, base);
+  const ForecastBasis basis(model, world, plan, sound, wishes, base);
   std::optional<MeasuredCosts> costs;
   if (options.calibrate && basis.advection_steps() > 0) {
-    costs = measure_costs<Dim>(world, plan, wishes, started, basis.advection_steps());
+    costs = measure_costs<Dim>(model, world, plan, wishes, started, basis.advection_steps());
     if (!costs)
       std::cerr
           << "warning: the scene becomes unstable in its first steps; the time is not forecast\n";
@@ -108,13 +109,13 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
   check_scene(scene, found);
   // Also for a scene with mistakes, where a picture is most useful.
   const std::string preview =
-      options.preview.empty() ? "" : write_preview<Dim>(*scene.world, options.preview);
+      options.preview.empty() ? "" : write_preview<Dim>(model, *scene.world, options.preview);
   if (found.has_errors()) throw DeckError(found);
   if (!found.items().empty()) std::cerr << found.render();
   if (!preview.empty()) std::cerr << fmt::format("{}: {}\n", printable(options.preview), preview);
   World<Dim>& world = *scene.world;
   set_threads(sensible_threads(moving_particles(world), options.threads));
-  const std::vector<Wish> wishes = wishes_of(world);
+  const std::vector<Wish> wishes = wishes_of(model, world);
   Plan<Dim> plan(world, wishes);
   world.rearrange();
 
@@ -138,7 +139,7 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
     if (std::isfinite(steps.solid)) j["time_steps"]["solid"] = steps.solid;
   }
   const std::optional<Forecast> forecast =
-      forecast_of<Dim>(world, plan, scene.sound, wishes, base, options, start);
+      forecast_of<Dim>(model, world, plan, scene.sound, wishes, base, options, start);
   if (forecast) j["forecast"] = to_json(*forecast);
   if (options.json) {
     std::cout << j.dump(2) << "\n";

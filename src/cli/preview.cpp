@@ -49,8 +49,7 @@ std::vector<Vec3> probe_places(const Model& model) {
 }  // namespace
 
 template <int Dim>
-std::string write_preview(const World<Dim>& world, const std::string& path) {
-  const Model& model = world.model();
+std::string write_preview(const Model& model, const World<Dim>& world, const std::string& path) {
   Aabb particles, surroundings;
   std::map<std::string, std::vector<Vec3>> positions;
   for (const auto& set : world.sets()) {
@@ -114,7 +113,7 @@ std::string write_preview(const World<Dim>& world, const std::string& path) {
   return legend;
 }
 
-template std::string write_preview<2>(const World<2>&, const std::string&);
-template std::string write_preview<3>(const World<3>&, const std::string&);
+template std::string write_preview<2>(const Model&, const World<2>&, const std::string&);
+template std::string write_preview<3>(const Model&, const World<3>&, const std::string&);
 
 }  // namespace sphgeo

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "deck/model.h"
 #include "sph/world.h"
 
 namespace sphgeo {
@@ -11,6 +12,6 @@ namespace sphgeo {
 /// the boundaries, and rings where probes are. Returns what the colours mean, as a line of text.
 /// Throws IoError.
 template <int Dim>
-std::string write_preview(const World<Dim>& world, const std::string& path);
+std::string write_preview(const Model& model, const World<Dim>& world, const std::string& path);
 
 }  // namespace sphgeo

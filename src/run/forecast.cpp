@@ -68,7 +68,7 @@ struct CoarseCopy {
 
   CoarseCopy(const Model& original, double wanted)
       : model(coarse(original, wanted)), scene(build_scene<Dim>(model, found, Filling::draft)) {
-    plan = std::make_unique<Plan<Dim>>(*scene.world, wishes_of(*scene.world));
+    plan = std::make_unique<Plan<Dim>>(*scene.world, wishes_of(*scene.model, *scene.world));
     scene.world->rearrange();
   }
 
@@ -209,14 +209,15 @@ void refuse_too_large(const Model& model) {
 }
 
 template <int Dim>
-ForecastBasis::ForecastBasis(World<Dim>& world, const Plan<Dim>& plan, const SoundSpeed& sound,
-                             const std::vector<Wish>& wishes, std::uint64_t base)
-    : model_(world.model()),
+ForecastBasis::ForecastBasis(const Model& model, World<Dim>& world, const Plan<Dim>& plan,
+                             const SoundSpeed& sound, const std::vector<Wish>& wishes,
+                             std::uint64_t base)
+    : model_(model),
       counts_(counts_of(world)),
       shares_(memory_shares(world, plan)),
       base_(static_cast<double>(base)),
       steps_(expected_steps(world, plan, typical_speed(world, sound), model_.end_time)),
-      output_(run_output(world, wishes, steps_.advection)) {}
+      output_(run_output(model, world, wishes, steps_.advection)) {}
 
 RunFigures ForecastBasis::figures(double coarser, const ParticleCounts& at, int with_threads,
                                   const std::optional<MeasuredCosts>& costs) const {
@@ -284,13 +285,14 @@ Forecast ForecastBasis::operator()(const std::optional<MeasuredCosts>& costs) co
 }
 
 template <int Dim>
-std::optional<MeasuredCosts> measure_costs(World<Dim>& world, Plan<Dim>& plan,
+std::optional<MeasuredCosts> measure_costs(const Model& model, World<Dim>& world, Plan<Dim>& plan,
                                            const std::vector<Wish>& wishes, double start,
                                            double steps) {
   const double particles = fluid(counts_of(world));
   if (particles > calibrated_particles) {
-    CoarseCopy<Dim> copy(world.model(), calibrated_particles / 2);
-    auto costs = measure_costs<Dim>(*copy.scene.world, *copy.plan, wishes, 0, steps);
+    CoarseCopy<Dim> copy(model, calibrated_particles / 2);
+    auto costs =
+        measure_costs<Dim>(*copy.scene.model, *copy.scene.world, *copy.plan, wishes, 0, steps);
     if (!costs) return costs;
     const double larger = ratio(particles, fluid(counts_of(*copy.scene.world)));
     return MeasuredCosts{start,
@@ -307,10 +309,10 @@ std::optional<MeasuredCosts> measure_costs(World<Dim>& world, Plan<Dim>& plan,
     costs.step = *step;
     auto begin = clock_type::now();
     plan.run(Stage::observe);
-    sample_probes(world);
+    sample_probes(model, world);
     costs.observation = seconds_since(begin);
     begin = clock_type::now();
-    run_output(world, wishes, 1e9);
+    run_output(model, world, wishes, 1e9);
     costs.frame = seconds_since(begin);
     return costs;
   } catch (const UnstableError&) {
@@ -322,7 +324,7 @@ template <int Dim>
 void RunForecast<Dim>::arrive(double wall) {
   timer_.end();
   if (basis_) return;
-  basis_.emplace(world_, plan_, sound_, wishes_, base_);
+  basis_.emplace(model_, world_, plan_, sound_, wishes_, base_);
   costs_.start = wall;
 }
 
@@ -354,13 +356,13 @@ std::optional<Forecast> RunForecast<Dim>::result() const {
   return (*basis_)(costs);
 }
 
-template ForecastBasis::ForecastBasis(World<2>&, const Plan<2>&, const SoundSpeed&,
+template ForecastBasis::ForecastBasis(const Model&, World<2>&, const Plan<2>&, const SoundSpeed&,
                                       const std::vector<Wish>&, std::uint64_t);
-template ForecastBasis::ForecastBasis(World<3>&, const Plan<3>&, const SoundSpeed&,
+template ForecastBasis::ForecastBasis(const Model&, World<3>&, const Plan<3>&, const SoundSpeed&,
                                       const std::vector<Wish>&, std::uint64_t);
-template std::optional<MeasuredCosts> measure_costs<2>(World<2>&, Plan<2>&,
+template std::optional<MeasuredCosts> measure_costs<2>(const Model&, World<2>&, Plan<2>&,
                                                        const std::vector<Wish>&, double, double);
-template std::optional<MeasuredCosts> measure_costs<3>(World<3>&, Plan<3>&,
+template std::optional<MeasuredCosts> measure_costs<3>(const Model&, World<3>&, Plan<3>&,
                                                        const std::vector<Wish>&, double, double);
 template class RunForecast<2>;
 template class RunForecast<3>;

@@ -28,8 +28,8 @@ struct MeasuredCosts {
 /// deck.
 struct ForecastBasis {
   template <int Dim>
-  ForecastBasis(World<Dim>& world, const Plan<Dim>& plan, const SoundSpeed& sound,
-                const std::vector<Wish>& wishes, std::uint64_t base);
+  ForecastBasis(const Model& model, World<Dim>& world, const Plan<Dim>& plan,
+                const SoundSpeed& sound, const std::vector<Wish>& wishes, std::uint64_t base);
 
   /// The forecast for the threads in use; without the time when no costs are given.
   Forecast operator()(const std::optional<MeasuredCosts>& costs) const;
@@ -51,7 +51,7 @@ struct ForecastBasis {
 /// a run of `steps` advection steps. Advances the world, or a coarser copy of it when a step would
 /// take too long. None when the scene becomes unstable in these steps.
 template <int Dim>
-std::optional<MeasuredCosts> measure_costs(World<Dim>& world, Plan<Dim>& plan,
+std::optional<MeasuredCosts> measure_costs(const Model& model, World<Dim>& world, Plan<Dim>& plan,
                                            const std::vector<Wish>& wishes, double start,
                                            double steps);
 
@@ -61,9 +61,11 @@ template <int Dim>
 class RunForecast {
  public:
   /// `base` as in ForecastBasis.
-  RunForecast(World<Dim>& world, const Plan<Dim>& plan, const Stepper<Dim>& stepper,
-              SoundSpeed sound, std::vector<Wish> wishes, std::uint64_t base)
-      : world_(world),
+  RunForecast(const Model& model, World<Dim>& world, const Plan<Dim>& plan,
+              const Stepper<Dim>& stepper, SoundSpeed sound, std::vector<Wish> wishes,
+              std::uint64_t base)
+      : model_(model),
+        world_(world),
         plan_(plan),
         sound_(std::move(sound)),
         wishes_(std::move(wishes)),
@@ -78,6 +80,7 @@ class RunForecast {
   std::optional<Forecast> result() const;
 
  private:
+  const Model& model_;
   World<Dim>& world_;
   const Plan<Dim>& plan_;
   SoundSpeed sound_;

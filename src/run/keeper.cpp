@@ -17,8 +17,7 @@ Keeper<Dim>::Keeper(RunParts<Dim> parts, const RunFolder& folder, double wall_be
 template <int Dim>
 void Keeper<Dim>::keep_if_due(double wall_seconds) {
   // Fifty times the duration of the last one: checkpoints never cost more than 2 % of a run.
-  const double interval =
-      std::max(parts_.world.model().output.checkpoint_every, 50 * last_seconds_);
+  const double interval = std::max(parts_.model.output.checkpoint_every, 50 * last_seconds_);
   if (wall_seconds - written_at_ >= interval) keep(wall_seconds);
 }
 
@@ -26,7 +25,7 @@ template <int Dim>
 void Keeper<Dim>::keep(double wall_seconds) {
   const auto start = std::chrono::steady_clock::now();
   parts_.stepper.guard().check_all();
-  const Model& model = parts_.world.model();
+  const Model& model = parts_.model;
   std::size_t expected = 0;
   for (const auto& set : parts_.world.sets())
     for (const auto& [name, field] : set->fields())

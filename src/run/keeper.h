@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "deck/model.h"
 #include "output/checkpoint.h"
 #include "run/recorder.h"
 #include "solve/stepper.h"
@@ -13,6 +14,7 @@ namespace sphgeo {
 /// The state of a run that a checkpoint holds.
 template <int Dim>
 struct RunParts {
+  const Model& model;
   World<Dim>& world;
   Plan<Dim>& plan;
   Stepper<Dim>& stepper;

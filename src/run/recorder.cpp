@@ -58,15 +58,15 @@ std::vector<Column> run_columns(bool soil) {
 void Schedule::done(double time) { next_ = (std::floor(time / interval_ + 1e-9) + 1) * interval_; }
 
 template <int Dim>
-Recorder<Dim>::Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder,
-                        const StateSource* resume)
-    : world_(world),
+Recorder<Dim>::Recorder(const Model& model, World<Dim>& world, Plan<Dim>& plan,
+                        const RunFolder& folder, const StateSource* resume)
+    : model_(model),
+      world_(world),
       plan_(plan),
       folder_(folder),
-      frames_(world.model().frame_interval()),
-      rows_(world.model().run_interval()),
+      frames_(model.frame_interval()),
+      rows_(model.run_interval()),
       run_("run", run_columns(world.find("soil") != nullptr)) {
-  const Model& model = world.model();
   if (resume) run_.resume(folder.run_csv(), bytes_at(*resume, "output/run"));
   else run_.write_to(folder.run_csv());
   for (const auto& spec : model.probes) {
@@ -167,7 +167,7 @@ void Recorder<Dim>::observe(double wall_seconds, bool last) {
 template <int Dim>
 void Recorder<Dim>::sample_probe(ProbeRun& p) {
   std::vector<std::optional<double>> values(p.series->columns().size());
-  const WorldView<Dim> view(world_);
+  const WorldView<Dim> view(model_, world_);
   p.probe->sample(view, values);
   p.series->add(world_.clock.time, std::span<const std::optional<double>>(values));
   p.schedule.done(world_.clock.time);
@@ -193,7 +193,7 @@ void Recorder<Dim>::add_set_totals(const ParticleSet<Dim>& set, const Energies& 
 
 template <int Dim>
 void Recorder<Dim>::add_soil_totals(const ParticleSet<Dim>& soil, Totals& sum) const {
-  const WorldView<Dim> view(world_);
+  const WorldView<Dim> view(model_, world_);
   const auto& fraction = soil.scalar(fields::volume_fraction);
   const Index n = soil.size();
   add_set_totals(soil, soil_energies(view), sum);
@@ -216,18 +216,18 @@ typename Recorder<Dim>::Totals Recorder<Dim>::totals() const {
   if (const ParticleSet<Dim>* soil = world_.find("soil")) add_soil_totals(*soil, sum);
   for (const auto& set : world_.sets())
     if (set->phase() == "solid")
-      add_set_totals(*set, solid_energies(WorldView<Dim>(world_), set->name()), sum);
-  sum.internal += contact_energy(WorldView<Dim>(world_));
+      add_set_totals(*set, solid_energies(WorldView<Dim>(model_, world_), set->name()), sum);
+  sum.internal += contact_energy(WorldView<Dim>(model_, world_));
   if (!water) return sum;
   const auto& m = water->scalar(fields::mass);
   const auto& rho = water->scalar(fields::density);
   const Index n = water->size();
-  add_set_totals(*water, water_energies(WorldView<Dim>(world_)), sum);
+  add_set_totals(*water, water_energies(WorldView<Dim>(model_, world_)), sum);
   sum.min_density = block_min(n, [&](Index i) { return rho[i]; });
   sum.max_density = block_max(n, [&](Index i) { return rho[i]; });
   if (!water->has(fields::water_fraction)) return sum;
   const auto& fraction = water->scalar(fields::water_fraction);
-  const bool follows = world_.model().numerics.pore_water != "constant_volume";
+  const bool follows = world_.parameters().water.follows_porosity;
   sum.water_volume = ordered_sum(n, [&](Index i) { return m[i] / rho[i]; });
   sum.mixture_volume =
       ordered_sum(n, [&](Index i) { return m[i] / (rho[i] * (follows ? fraction[i] : 1.0)); });
@@ -270,7 +270,7 @@ void Recorder<Dim>::write_frame() {
   const auto start = std::chrono::steady_clock::now();
   for (const auto& set : world_.sets())
     if (set->phase() != "wall") write_set(*set);
-  if (!world_.model().boundaries.empty()) write_boundaries();
+  if (!model_.boundaries.empty()) write_boundaries();
   ++frame_;
   last_frame_time_ = world_.clock.time;
   ++calls_frames_;
@@ -279,7 +279,7 @@ void Recorder<Dim>::write_frame() {
 
 template <int Dim>
 std::vector<std::string> Recorder<Dim>::frame_fields(const ParticleSet<Dim>& set) const {
-  const auto& asked = world_.model().output.frames.fields;
+  const auto& asked = model_.output.frames.fields;
   std::vector<std::string> names =
       asked.empty() ? usual_fields(set.name(), world_.find("water") && world_.find("soil")) : asked;
   std::erase_if(names, [&](const std::string& f) { return !set.fields().contains(f); });
@@ -290,19 +290,18 @@ template <int Dim>
 void Recorder<Dim>::write_set(const ParticleSet<Dim>& set) {
   VtuOptions options;
   options.time = world_.clock.time;
-  options.precision = world_.model().output.frames.precision == "float64" ? VtuPrecision::float64
-                                                                          : VtuPrecision::float32;
+  options.precision =
+      model_.output.frames.precision == "float64" ? VtuPrecision::float64 : VtuPrecision::float32;
   write_set_frame(folder_.frame(set.name(), frame_), set, frame_fields(set), options);
   pvd_.at(set.name()).add(world_.clock.time, RunFolder::frame_name(set.name(), frame_));
 }
 
 template <int Dim>
 void Recorder<Dim>::write_boundaries() {
-  const Model& model = world_.model();
   // Walls at rest are written once and listed at every time.
-  const Index number = boundaries_move(model) ? frame_ : 0;
+  const Index number = boundaries_move(model_) ? frame_ : 0;
   if (number == frame_)
-    write_boundary_frame(folder_.frame("boundaries", number), model, world_.clock.time);
+    write_boundary_frame(folder_.frame("boundaries", number), model_, world_.clock.time);
   pvd_.at("boundaries").add(world_.clock.time, RunFolder::frame_name("boundaries", number));
 }
 

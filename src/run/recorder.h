@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "deck/model.h"
 #include "output/pvd.h"
 #include "output/run_folder.h"
 #include "output/series.h"
@@ -39,7 +40,7 @@ class Recorder {
  public:
   /// Opens all files; with `resume` it continues existing ones, cut back to the checkpoint. Throws
   /// IoError.
-  Recorder(World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder,
+  Recorder(const Model& model, World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder,
            const StateSource* resume = nullptr);
 
   /// Flushes all rows to the disk, then saves the length of each file.
@@ -89,6 +90,7 @@ class Recorder {
   void write_boundaries();
   std::vector<std::string> frame_fields(const ParticleSet<Dim>& set) const;
 
+  const Model& model_;
   World<Dim>& world_;
   Plan<Dim>& plan_;
   RunFolder folder_;

@@ -58,7 +58,7 @@ class DeckRun {
                                ? ExistingResults::overwrite
                                : settings_.existing);
     observer_.begins(folder);
-    const std::vector<Wish> wishes = wishes_of(world);
+    const std::vector<Wish> wishes = wishes_of(model_, world);
     Plan<Dim> plan(world, wishes);
     if (resumed) {
       world.load(*resumed);
@@ -72,12 +72,12 @@ class DeckRun {
       observer_.resumes(world.clock.time, world.clock.advection_steps, checkpoint.path);
     }
     write_file_atomically(folder.resolved_deck(), resolved_yaml(model_));
-    Recorder<Dim> recorder(world, plan, folder, resumed);
+    Recorder<Dim> recorder(model_, world, plan, folder, resumed);
     checkpoint.reader.reset();  // its memory is needed for the neighbor lists
     set_threads(sensible_threads(moving_particles(world), settings_.threads));
-    const RunParts<Dim> parts{world, plan, stepper, recorder};
+    const RunParts<Dim> parts{model_, world, plan, stepper, recorder};
     Keeper<Dim> keeper(parts, folder, wall_before);
-    RunForecast<Dim> forecast(world, plan, stepper, scene.sound, wishes, base);
+    RunForecast<Dim> forecast(model_, world, plan, stepper, scene.sound, wishes, base);
 
     const std::optional<UnstableError> failure = step(parts, keeper, forecast);
     recorder.flush();

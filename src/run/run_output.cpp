@@ -25,7 +25,7 @@ double count_of_every(double interval, double duration, double steps) {
 
 /// Size of a frame of one set, and the memory while it is written.
 template <int Dim>
-std::pair<double, double> frame_size(const World<Dim>& world, const ParticleSet<Dim>& set,
+std::pair<double, double> frame_size(const Model& model, const ParticleSet<Dim>& set,
                                      const std::vector<Wish>& wishes) {
   const auto n = static_cast<std::size_t>(set.size());
   std::vector<VtuField> columns;
@@ -50,8 +50,8 @@ std::pair<double, double> frame_size(const World<Dim>& world, const ParticleSet<
   }
   VtuOptions options;
   options.time = 0;
-  options.precision = world.model().output.frames.precision == "float64" ? VtuPrecision::float64
-                                                                         : VtuPrecision::float32;
+  options.precision =
+      model.output.frames.precision == "float64" ? VtuPrecision::float64 : VtuPrecision::float32;
   const auto& x = set.vector(fields::position);
   const auto bytes = static_cast<double>(vtu_bytes(
       VtuPoints(set.size(), [&](Index i) { return to_space<Dim>(x[i]); }), columns, options));
@@ -69,8 +69,8 @@ double boundaries_bytes(const Model& model) {
 }
 
 template <int Dim>
-RunOutput run_output(const World<Dim>& world, const std::vector<Wish>& wishes, double steps) {
-  const Model& model = world.model();
+RunOutput run_output(const Model& model, const World<Dim>& world, const std::vector<Wish>& wishes,
+                     double steps) {
   RunOutput out;
   out.frames = count_of_every(model.frame_interval(), model.end_time, steps);
   const double rows = count_of_every(model.run_interval(), model.end_time, steps);
@@ -85,7 +85,7 @@ RunOutput run_output(const World<Dim>& world, const std::vector<Wish>& wishes, d
   out.series_bytes = sizeof(double) * cells;
   for (const auto& set : world.sets())
     if (set->phase() != "wall") {
-      const auto [bytes, buffers] = frame_size(world, *set, wishes);
+      const auto [bytes, buffers] = frame_size(model, *set, wishes);
       out.frame_bytes += bytes;
       out.frame_heads += std::min(bytes, head_bytes);
       out.buffer_bytes = std::max(out.buffer_bytes, buffers);
@@ -96,18 +96,18 @@ RunOutput run_output(const World<Dim>& world, const std::vector<Wish>& wishes, d
 }
 
 template <int Dim>
-void sample_probes(const World<Dim>& world) {
-  const WorldView<Dim> view(world);
-  for (const auto& spec : world.model().probes) {
+void sample_probes(const Model& model, const World<Dim>& world) {
+  const WorldView<Dim> view(model, world);
+  for (const auto& spec : model.probes) {
     const auto& probe = dynamic_cast<const Probe&>(*spec);
-    std::vector<std::optional<double>> values(probe.columns(world.model()).size());
+    std::vector<std::optional<double>> values(probe.columns(model).size());
     probe.sample(view, values);
   }
 }
 
-template RunOutput run_output<2>(const World<2>&, const std::vector<Wish>&, double);
-template RunOutput run_output<3>(const World<3>&, const std::vector<Wish>&, double);
-template void sample_probes<2>(const World<2>&);
-template void sample_probes<3>(const World<3>&);
+template RunOutput run_output<2>(const Model&, const World<2>&, const std::vector<Wish>&, double);
+template RunOutput run_output<3>(const Model&, const World<3>&, const std::vector<Wish>&, double);
+template void sample_probes<2>(const Model&, const World<2>&);
+template void sample_probes<3>(const Model&, const World<3>&);
 
 }  // namespace sphgeo

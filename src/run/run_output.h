@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "deck/model.h"
 #include "plan/plan.h"
 
 namespace sphgeo {
@@ -23,7 +24,8 @@ struct RunOutput {
 
 /// Of a run of `steps` advection steps. Composes one frame to know its size.
 template <int Dim>
-RunOutput run_output(const World<Dim>& world, const std::vector<Wish>& wishes, double steps);
+RunOutput run_output(const Model& model, const World<Dim>& world, const std::vector<Wish>& wishes,
+                     double steps);
 
 /// Bytes of a set's part of a checkpoint.
 template <int Dim>
@@ -40,6 +42,6 @@ double boundaries_bytes(const Model& model);
 
 /// Samples all probes once to measure the time.
 template <int Dim>
-void sample_probes(const World<Dim>& world);
+void sample_probes(const Model& model, const World<Dim>& world);
 
 }  // namespace sphgeo

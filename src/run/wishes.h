@@ -17,10 +17,10 @@ std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& 
 
 /// The same for the sets of a world.
 template <int Dim>
-std::vector<Wish> wishes_of(const World<Dim>& world) {
+std::vector<Wish> wishes_of(const Model& model, const World<Dim>& world) {
   std::vector<std::string> names;
   for (const auto& set : world.sets()) names.push_back(set->name());
-  return wishes_of(world.model(), names);
+  return wishes_of(model, names);
 }
 
 }  // namespace sphgeo

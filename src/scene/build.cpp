@@ -290,9 +290,10 @@ Aabb scene_box(const Model& model) {
 template <int Dim>
 Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling) {
   Scene<Dim> scene;
+  scene.model = &model;
   // What follows from the filling is added below; then nobody changes it any more.
   const auto parameters = std::make_shared<Parameters>(compile_parameters(model));
-  scene.world = std::make_unique<World<Dim>>(model, parameters);
+  scene.world = std::make_unique<World<Dim>>(parameters);
   scene.sound = water_sound_speed(model, water_box(model), scene_box(model));
   if (has_water(model) && !(scene.sound.value > 0)) {
     found.error("E112", model.place_of("materials"), "materials",

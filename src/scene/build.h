@@ -24,6 +24,7 @@ struct SoundSpeed {
 /// A world and the findings of building it.
 template <int Dim>
 struct Scene {
+  const Model* model = nullptr;  ///< what it was built from
   std::unique_ptr<World<Dim>> world;
   std::vector<std::pair<std::string, Index>> body_particles;      ///< by body of the deck
   std::vector<std::pair<std::string, Index>> boundary_particles;  ///< by boundary of the deck

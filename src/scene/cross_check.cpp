@@ -24,9 +24,7 @@ std::string point_text(const Vec3& p) {
 // A body's particle inside the shape of another body of the same phase, or of a solid, deeper than
 // a quarter of the spacing.
 template <int Dim>
-void check_bodies_overlap(const World<Dim>& world, const ParticleSet<Dim>& set,
-                          Diagnostics& found) {
-  const Model& model = world.model();
+void check_bodies_overlap(const Model& model, const ParticleSet<Dim>& set, Diagnostics& found) {
   if (model.bodies.size() < 2) return;
   const auto& x = set.vector(fields::position);
   const auto& part = set.tag(fields::part);
@@ -60,10 +58,10 @@ void check_bodies_overlap(const World<Dim>& world, const ParticleSet<Dim>& set,
 // A particle that is free to move and starts closer to a wall particle than half a spacing is
 // repelled strongly. Clamped particles do not move.
 template <int Dim>
-void check_in_walls(World<Dim>& world, const ParticleSet<Dim>& set, Diagnostics& found) {
+void check_in_walls(const Model& model, World<Dim>& world, const ParticleSet<Dim>& set,
+                    Diagnostics& found) {
   const ParticleSet<Dim>* walls = world.find("walls");
   if (!walls || walls->size() == 0) return;
-  const Model& model = world.model();
   CellGrid<Dim> grid;
   const auto& y = walls->vector(fields::position);
   const auto frame =
@@ -121,8 +119,7 @@ void check_in_walls(World<Dim>& world, const ParticleSet<Dim>& set, Diagnostics&
 }
 
 template <int Dim>
-void check_lengths(const World<Dim>& world, Diagnostics& found) {
-  const Model& model = world.model();
+void check_lengths(const Model& model, Diagnostics& found) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Body& body = model.bodies[b];
     if (body.shape->type != "box") continue;
@@ -145,8 +142,7 @@ void check_lengths(const World<Dim>& world, Diagnostics& found) {
 }
 
 template <int Dim>
-void check_probes(const World<Dim>& world, Diagnostics& found) {
-  const Model& model = world.model();
+void check_probes(const Model& model, const World<Dim>& world, Diagnostics& found) {
   Aabb box;
   for (const auto& s : world.sets()) {
     const auto& x = s->vector(fields::position);
@@ -184,9 +180,8 @@ void check_probes(const World<Dim>& world, Diagnostics& found) {
 
 // Without a drag law water and soil interact by pressure only.
 template <int Dim>
-void check_coupling(const World<Dim>& world, Diagnostics& found) {
+void check_coupling(const Model& model, const World<Dim>& world, Diagnostics& found) {
   if (!world.find("soil") || !world.find("water")) return;
-  const Model& model = world.model();
   for (std::size_t k = 0; k < model.materials.size(); ++k) {
     const auto* soil = dynamic_cast<const Soil*>(model.materials[k].get());
     if (!soil || soil->drag != "auto" || soil->drag_law() != "none") continue;
@@ -251,18 +246,19 @@ void check_shapes(const Model& model, Diagnostics& found) {
 
 template <int Dim>
 void check_scene(const Scene<Dim>& scene, Diagnostics& found) {
+  const Model& model = *scene.model;
   World<Dim>& world = *scene.world;
-  check_shapes(world.model(), found);
-  check_switched_off(world.model(), found);
-  check_steps(world.model(), found);
+  check_shapes(model, found);
+  check_switched_off(model, found);
+  check_steps(model, found);
   for (const auto& set : world.sets()) {
     if (set->phase() == "wall") continue;
-    check_bodies_overlap(world, *set, found);
-    check_in_walls(world, *set, found);
+    check_bodies_overlap(model, *set, found);
+    check_in_walls(model, world, *set, found);
   }
-  check_coupling(world, found);
-  check_lengths(world, found);
-  check_probes(world, found);
+  check_coupling(model, world, found);
+  check_lengths<Dim>(model, found);
+  check_probes(model, world, found);
   check_walls(scene, found);
   check_leaks(scene, found);
 }

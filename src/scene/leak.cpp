@@ -266,7 +266,7 @@ class LeakSearch {
 
 template <int Dim>
 void check_leaks(const Scene<Dim>& scene, Diagnostics& found) {
-  const Model& model = scene.world->model();
+  const Model& model = *scene.model;
   const double g = model.gravity.norm();
   if (!(g > 0)) return;  // no direction of gravity
   FloodFrame frame{Dim, model.resolution, 0, false, {}};

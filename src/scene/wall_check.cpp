@@ -46,7 +46,7 @@ std::vector<Solid> solids_of(const Model& model) {
 
 template <int Dim>
 void check_solid(const Scene<Dim>& scene, const Solid& s, Diagnostics& found) {
-  const Model& model = scene.world->model();
+  const Model& model = *scene.model;
   if (s.shape) {
     CheckContext context(found, model.places, s.path + ".shape", model.dimension, model.resolution);
     s.shape->inspect(context);
@@ -83,10 +83,10 @@ void check_solid(const Scene<Dim>& scene, const Solid& s, Diagnostics& found) {
 // Water deep in a solid, where there are no wall particles. Water near its surface is found by
 // check_water_in_walls, also for moving boundaries.
 template <int Dim>
-void check_water_in_solid(const World<Dim>& world, const Solid& s, Diagnostics& found) {
+void check_water_in_solid(const Model& model, const World<Dim>& world, const Solid& s,
+                          Diagnostics& found) {
   const ParticleSet<Dim>* water = world.find("water");
   if (!water || !s.shape || !s.in_place) return;
-  const Model& model = world.model();
   const Aabb box = s.shape->box();
   const auto& x = water->vector(fields::position);
   const double reach = support_radius(model);
@@ -134,8 +134,7 @@ void check_probes(const Model& model, const std::vector<Solid>& solids, Diagnost
 
 // A body with no boundary anywhere below it, although the scene has boundaries.
 template <int Dim>
-void check_bodies_held(const World<Dim>& world, Diagnostics& found) {
-  const Model& model = world.model();
+void check_bodies_held(const Model& model, const World<Dim>& world, Diagnostics& found) {
   const ParticleSet<Dim>*water = world.find("water"), *walls = world.find("walls");
   if (!water || !walls || walls->size() == 0 || model.body_force || !(model.gravity.norm() > 0))
     return;
@@ -171,14 +170,15 @@ void check_bodies_held(const World<Dim>& world, Diagnostics& found) {
 
 template <int Dim>
 void check_walls(const Scene<Dim>& scene, Diagnostics& found) {
+  const Model& model = *scene.model;
   const World<Dim>& world = *scene.world;
-  const std::vector<Solid> solids = solids_of<Dim>(world.model());
+  const std::vector<Solid> solids = solids_of<Dim>(model);
   for (const Solid& s : solids) {
     check_solid(scene, s, found);
-    check_water_in_solid(world, s, found);
+    check_water_in_solid(model, world, s, found);
   }
-  check_probes(world.model(), solids, found);
-  check_bodies_held(world, found);
+  check_probes(model, solids, found);
+  check_bodies_held(model, world, found);
 }
 
 template void check_walls<2>(const Scene<2>&, Diagnostics&);

@@ -11,9 +11,10 @@ namespace sphgeo {
 template <int Dim>
 class WorldView final : public SceneView {
  public:
-  explicit WorldView(const World<Dim>& world) : world_(world) {}
+  /// The model is the one that the world was built from.
+  WorldView(const Model& model, const World<Dim>& world) : model_(model), world_(world) {}
 
-  const Model& model() const override { return world_.model(); }
+  const Model& model() const override { return model_; }
   const Parameters& parameters() const override { return world_.parameters(); }
   double time() const override { return world_.clock.time; }
   bool has_set(const std::string& set) const override { return world_.find(set) != nullptr; }
@@ -63,6 +64,7 @@ class WorldView final : public SceneView {
   }
 
  private:
+  const Model& model_;
   const World<Dim>& world_;
 };
 

@@ -27,9 +27,8 @@ std::span<const Id> ids_of(const ParticleSet<Dim>& set) {
 }  // namespace
 
 template <int Dim>
-World<Dim>::World(const Model& model, std::shared_ptr<const Parameters> parameters)
-    : model_(model),
-      parameters_(std::move(parameters)),
+World<Dim>::World(std::shared_ptr<const Parameters> parameters)
+    : parameters_(std::move(parameters)),
       gravity_(to_scene<Dim>(parameters_->gravity)),
       single_(parameters_->numerics.pair_precision == PairPrecision::single),
       frozen_(parameters_->numerics.pair_geometry == PairGeometry::frozen) {}

@@ -18,7 +18,6 @@
 
 namespace sphgeo {
 
-struct Model;
 struct Parameters;
 
 /// The clocks of Algorithm 2.
@@ -68,12 +67,10 @@ struct Exchanged {
 template <int Dim>
 class World {
  public:
-  /// The model must outlive the world.
-  World(const Model& model, std::shared_ptr<const Parameters> parameters);
+  explicit World(std::shared_ptr<const Parameters> parameters);
   World(const World&) = delete;
   World& operator=(const World&) = delete;
 
-  const Model& model() const { return model_; }
   /// What the deck says to the effects; complete when the scene is built.
   const Parameters& parameters() const { return *parameters_; }
   const Vec<Dim>& gravity() const { return gravity_; }  ///< m/s2
@@ -167,7 +164,6 @@ class World {
                   std::span<const Vec<Dim>> at);
   double reach() const;
 
-  const Model& model_;
   std::shared_ptr<const Parameters> parameters_;
   Vec<Dim> gravity_;
   bool single_, frozen_;

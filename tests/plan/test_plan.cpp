@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "plan/fake_effects.h"
+#include "sph/parameters.h"
 #include "support/rig.h"
 
 using namespace sphgeo;
@@ -21,13 +22,9 @@ std::size_t register_fakes(std::integer_sequence<int, K...>) {
 }
 const std::size_t fake_count = register_fakes(std::make_integer_sequence<int, test::fakes>());
 
-const char* const empty_deck =
-    "dimension: 2\nresolution: 0.1\nend_time: 1\nmaterials: [{name: water, type: water}]\n";
-
 // A world with one set of two particles, named after the scenario.
 struct FakeWorld {
-  Model model = read_deck_text(empty_deck);
-  World<2> world{model, std::make_shared<Parameters>()};
+  World<2> world{std::make_shared<Parameters>()};
   explicit FakeWorld(const std::string& scenario) {
     world.add_set(scenario, "water", 0.1, 0.13, true).resize(2);
     world.set_domain(Vec<2>::Constant(-1), Vec<2>::Constant(1));

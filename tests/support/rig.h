@@ -98,7 +98,7 @@ struct Rig {
   std::vector<std::optional<double>> sample(std::size_t k) const {
     const auto& probe = dynamic_cast<const Probe&>(*model.probes[k]);
     std::vector<std::optional<double>> out(probe.columns(model).size());
-    probe.sample(WorldView<Dim>(world), out);
+    probe.sample(WorldView<Dim>(model, world), out);
     return out;
   }
 
