@@ -14,6 +14,8 @@ ROOMS = [("core",), ("deck",), ("particles",), ("sph",), ("geometry", "materials
          ("relax",), ("boundaries", "effects", "probes"), ("scene",), ("plan",), ("solve", "output"),
          ("run",), ("study", "report", "compare"), ("cli",)]
 LEVEL = {room: level for level, rooms in enumerate(ROOMS) for room in rooms}
+# Rooms that run a scene and have no business with the deck.
+MODEL_FREE = ("particles", "sph", "effects", "plan")
 MAX_LINES = 400
 MAX_COLUMNS = 100
 # Rooms where things are added, one file each, named after the type it registers.
@@ -85,6 +87,29 @@ def reaches(edges, start, goal):
     return False
 
 
+def check_model(root):
+    """What runs does not see the deck's model, by no chain of includes: it reads the parameters."""
+    src = root / "src"
+    includes = {}
+    for path in code_files(src):
+        found = (INCLUDE.match(line) for line in lines_of(path))
+        includes[path.relative_to(src).as_posix()] = [f.group(1) for f in found if f]
+    for name in sorted(includes):
+        if name.split("/")[0] in MODEL_FREE and "deck/model.h" in chain_from(includes, name):
+            yield f"{src / name}:1: includes the model; what it needs belongs in sph/parameters.h"
+
+
+def chain_from(includes, name):
+    """All files that one includes, directly or not."""
+    seen, todo = set(), [name]
+    while todo:
+        for other in includes.get(todo.pop(), []):
+            if other not in seen:
+                seen.add(other)
+                todo.append(other)
+    return seen
+
+
 def check_texts(root):
     """Length, macros, `using namespace`, include guards and words that mark an unfinished part."""
     for folder in (root / "src", root / "tests"):
@@ -152,7 +177,8 @@ def check_tests(root):
 
 
 def findings(root):
-    for check in (check_includes, check_texts, check_prints, check_names, check_types, check_tests):
+    for check in (check_includes, check_model, check_texts, check_prints, check_names, check_types,
+                  check_tests):
         yield from check(root)
 
 

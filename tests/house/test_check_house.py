@@ -47,6 +47,13 @@ class HouseRules(unittest.TestCase):
         found = self.found(**one_way, src__output__c_dot_cpp='#include "solve/a.h"\n')
         self.assertEqual(len([f for f in found if "include each other" in f]), 2, found)
 
+    def test_model(self):
+        chain = dict(src__deck__model_dot_h=HEADER,
+                     src__materials__a_dot_h=HEADER + '#include "deck/model.h"\n')
+        self.assertEqual(self.found(**chain), [])
+        self.expect_one("includes the model", **chain,
+                        src__effects__b_dot_cpp='#include "materials/a.h"\n')
+
     def test_unknown_room(self):
         self.expect_one("no room of the house", src__attic__a_dot_h=HEADER)
         self.expect_one("in no room", src__a_dot_cpp="")
