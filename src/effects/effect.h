@@ -118,6 +118,10 @@ class Effect {
   /// reinitialize stage left outside of the fields for the acoustic steps. The clock shows the
   /// start of the advection step.
   virtual void restore(World<Dim>&) {}
+  /// Saves what apply() keeps from step to step outside of the fields, under names that begin with
+  /// `at`; load() takes it back, after prepare(). Nothing else may be kept.
+  virtual void save(StateSink&, const std::string& /*at*/) const {}
+  virtual void load(const StateSource&, const std::string& /*at*/) {}
   /// Lowers the bounds to what this effect stays stable with.
   virtual void limit(const World<Dim>&, StepLimits&) const {}
   /// Adds what the guard is to watch.

@@ -16,20 +16,17 @@ struct Newcomer {
 };
 
 /// Appends particles of water of the density at rest under `depth_pressure` [Pa] to the set, and
-/// enters them into the book of the boundary. Ids go on from the largest that there was.
+/// enters them into the book of the boundary.
 template <int Dim>
 void let_in(World<Dim>& world, ParticleSet<Dim>& water, const std::string& boundary,
             const std::vector<Newcomer<Dim>>& newcomers, double pressure = 0) {
   if (newcomers.empty()) return;
-  const Index first = water.size();
   const double density = world.parameters().water.density, c = world.parameters().water.sound_speed;
   const double mass = density * std::pow(water.spacing(), Dim);
-  double& next = world.kept("next_id/" + water.name());
   Exchanged<Dim>& book = world.exchanged(boundary);
-  water.resize(first + static_cast<Index>(newcomers.size()));
+  const Index first = water.append(static_cast<Index>(newcomers.size()));
   for (std::size_t k = 0; k < newcomers.size(); ++k) {
     const Index i = first + static_cast<Index>(k);
-    water.ids()[i] = static_cast<Id>(next++);
     water.tag(fields::part)[i] = -1;  // of no body
     water.vector(fields::position)[i] = newcomers[k].place;
     water.vector(fields::velocity)[i] = newcomers[k].velocity;
@@ -38,14 +35,6 @@ void let_in(World<Dim>& world, ParticleSet<Dim>& water, const std::string& bound
     book.entered += 1;
     book.add(1, mass, newcomers[k].place, newcomers[k].velocity, world.gravity());
   }
-}
-
-/// Prepares what let_in() keeps.
-template <int Dim>
-void prepare_entry(World<Dim>& world, const ParticleSet<Dim>& water, const std::string& boundary) {
-  world.exchanged(boundary);
-  double& next = world.kept("next_id/" + water.name());
-  next = std::max(next, static_cast<double>(water.size()));
 }
 
 /// One instance of an effect for each of the boundaries, which its constructor takes.

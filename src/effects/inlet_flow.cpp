@@ -30,32 +30,30 @@ class InletFlow final : public Effect<Dim> {
 
   void prepare(World<Dim>& world) override {
     water_ = &world.set("water");
-    prepare_entry(world, *water_, inlet_.name);
-    for (const char* name : {"way", "layers", "time"}) world.kept(key(name));
+    world.exchanged(inlet_.name);
   }
 
   void apply(World<Dim>& world) override {
-    double &way = world.kept(key("way")), &layers = world.kept(key("layers")),
-           &last = world.kept(key("time"));
-    const double begin = std::max(last, inlet_.from),
+    const double begin = std::max(last_, inlet_.from),
                  now = std::min(world.clock.time, inlet_.until.value_or(world.clock.time));
-    last = std::max(last, world.clock.time);
+    last_ = std::max(last_, world.clock.time);
     if (world.clock.time < inlet_.from || now < begin) return;
     // The velocity at the middle of the interval is good to the second order; a step is a small
     // part of what it takes to change.
     const Vec3 velocity = velocity_at(0.5 * (begin + now));
     const double dp = water_->spacing(),
                  speed = std::max(0.0, inlet_.direction * velocity[inlet_.across]);
-    way += speed * (now - begin);
+    way_ += speed * (now - begin);
     std::vector<Newcomer<Dim>> newcomers;
     // A layer enters when half of it has come through, so that what has entered is the way to half
     // a layer.
-    for (; (layers + 0.5) * dp <= way; ++layers) {
+    for (; (layers_ + 0.5) * dp <= way_; ++layers_) {
       // Since it came through; no longer ago than the last step.
-      const double ago = speed > 0 ? std::min((way - (layers + 0.5) * dp) / speed, now - begin) : 0;
+      const double ago =
+          speed > 0 ? std::min((way_ - (layers_ + 0.5) * dp) / speed, now - begin) : 0;
       const Vec3 ahead = ago * velocity;
       for (std::size_t k = 0; k < inlet_.layer.size(); ++k) {
-        const auto number = static_cast<std::uint64_t>(layers) * inlet_.layer.size() + k;
+        const auto number = static_cast<std::uint64_t>(layers_) * inlet_.layer.size() + k;
         if (inlet_.share < 1 && random_uniform(inlet_.seed, number) >= inlet_.share) continue;
         newcomers.push_back({to_scene<Dim>(inlet_.layer[k] + ahead), to_scene<Dim>(velocity)});
       }
@@ -63,6 +61,16 @@ class InletFlow final : public Effect<Dim> {
     let_in(world, *water_, inlet_.name, newcomers);
   }
 
+  void save(StateSink& sink, const std::string& at) const override {
+    sink.put_number(at + "way", way_);
+    sink.put_number(at + "layers", layers_);
+    sink.put_number(at + "time", last_);
+  }
+  void load(const StateSource& source, const std::string& at) override {
+    way_ = source.number(at + "way");
+    layers_ = source.number(at + "layers");
+    last_ = source.number(at + "time");
+  }
   std::size_t bytes() const override { return inlet_.layer.size() * sizeof(Vec3); }
 
  private:
@@ -71,9 +79,10 @@ class InletFlow final : public Effect<Dim> {
     const Vec3 nowhere = Vec3::Zero();
     return {v[0](nowhere, time), v[1](nowhere, time), v[2](nowhere, time)};
   }
-  std::string key(const std::string& name) const { return "inlet/" + inlet_.name + "/" + name; }
-
   const InletParameters& inlet_;
+  double way_ = 0;     ///< that the water has come through, m
+  double layers_ = 0;  ///< that have entered
+  double last_ = 0;    ///< time of the last call, s
   ParticleSet<Dim>* water_ = nullptr;
 };
 

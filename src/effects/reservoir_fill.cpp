@@ -32,7 +32,7 @@ class ReservoirFill final : public Effect<Dim> {
 
   void prepare(World<Dim>& world) override {
     water_ = &world.set("water");
-    prepare_entry(world, *water_, reservoir_.name);
+    world.exchanged(reservoir_.name);
     places_.clear();
     for (const Vec3& p : reservoir_.positions) places_.push_back(to_scene<Dim>(p));
   }

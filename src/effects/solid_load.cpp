@@ -39,9 +39,6 @@ class SolidLoad final : public Effect<Dim> {
       n.fields.push_back({set, &fields::fluid_force, Access::write});
     return n;
   }
-  void prepare(World<Dim>& world) override {
-    for (const char* name : {step_, time_}) world.kept(name);
-  }
   void apply(World<Dim>& world) override {
     map_.update(world);
     std::vector<Field<Vec<Dim>>*> force;
@@ -51,7 +48,7 @@ class SolidLoad final : public Effect<Dim> {
     }
     ParticleSet<Dim>& skin = world.set("skin");
     const auto& number = skin.tag(fields::source_set);
-    const double share = share_of_mean(world);
+    const double share = share_of_mean(world.clock);
     const auto add = [&](const FieldSpec& field, const FieldSpec& mean_field) {
       const auto& by = skin.vector(field);
       auto& mean = skin.vector(mean_field);
@@ -63,23 +60,29 @@ class SolidLoad final : public Effect<Dim> {
     if (water_) add(fields::water_force, fields::mean_water_force);
     if (soil_) add(fields::soil_force, fields::mean_soil_force);
   }
+  void save(StateSink& sink, const std::string& at) const override {
+    sink.put_count(at + "step", step_);
+    sink.put_number(at + "time", time_);
+  }
+  void load(const StateSource& source, const std::string& at) override {
+    step_ = source.count(at + "step");
+    time_ = source.number(at + "time");
+  }
   std::size_t bytes() const override { return map_.bytes(); }
 
  private:
   /// Of this acoustic step in the time since the advection step began.
-  static double share_of_mean(World<Dim>& world) {
-    double &step = world.kept(step_), &time = world.kept(time_);
-    const auto now = static_cast<double>(world.clock.advection_steps);
-    if (step != now) time = 0;
-    step = now;
-    time += world.clock.dt_acoustic;
-    return world.clock.dt_acoustic / time;
+  double share_of_mean(const Clock& clock) {
+    if (step_ != clock.advection_steps) time_ = 0;
+    step_ = clock.advection_steps;
+    time_ += clock.dt_acoustic;
+    return clock.dt_acoustic / time_;
   }
 
-  static constexpr const char* step_ = "solid_load/step";
-  static constexpr const char* time_ = "solid_load/time";
   std::vector<std::string> solids_;
   bool water_, soil_;
+  long step_ = 0;    ///< the advection step that the means are of
+  double time_ = 0;  ///< that they are taken over, s
   SkinMap<Dim> map_;
 };
 

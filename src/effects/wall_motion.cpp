@@ -6,7 +6,6 @@
 #include "deck/motion.h"
 #include "effects/effect.h"
 #include "effects/wall_records.h"
-#include "effects/wave_absorption.h"
 #include "sph/parameters.h"
 
 namespace sphgeo {
@@ -20,7 +19,7 @@ struct Extra {
 
   Extra() = default;
   /// Brings the piston nearer to the speed that it is to have.
-  Extra(PistonState state, const Vec3& direction, double dt) {
+  Extra(PistonState& state, const Vec3& direction, double dt) {
     const double before = state.speed;
     if (state.lag > 0) state.speed += (state.wanted - before) * -std::expm1(-dt / state.lag);
     state.shift += 0.5 * (before + state.speed) * dt;
@@ -81,8 +80,8 @@ class WallMotion final : public Effect<Dim> {
       moments[k].emplace(*motions_[k], middle, end);
       const BoundaryMotion& wall = world.parameters().boundary_motions[k];
       if (wall.absorbs_waves)
-        extras[k] = Extra(PistonState(world, wall.name), motions_[k]->waves->direction,
-                          world.clock.dt_acoustic);
+        extras[k] =
+            Extra(world.piston(wall.name), motions_[k]->waves->direction, world.clock.dt_acoustic);
     }
     parallel_for(static_cast<Index>(moving_.size()), [&](Index place) {
       const Index i = moving_[static_cast<std::size_t>(place)];

@@ -1,5 +1,3 @@
-#include "effects/wave_absorption.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -54,16 +52,13 @@ class WaveAbsorption final : public Effect<Dim> {
   void prepare(World<Dim>& world) override {
     water_ = &world.set("water");
     kernel_ = Kernel<Dim>(water_->smoothing_length());
-    state_.emplace(world, piston_.name);
-    mean_ = &world.kept(PistonState::key(piston_.name, "mean"));
-    begun_ = &world.kept(PistonState::key(piston_.name, "begun"));
-    last_ = &world.kept(PistonState::key(piston_.name, "time"));
+    state_ = &world.piston(piston_.name);
   }
 
   void apply(World<Dim>& world) override {
     const Motion& motion = *piston_.motion;
-    const double now = world.clock.time, passed = now - *last_;
-    *last_ = now;
+    const double now = world.clock.time, passed = now - last_;
+    last_ = now;
     state_->wanted = 0;
     state_->lag = lag();
     if (now < motion.from || (motion.until && now >= *motion.until)) return;
@@ -80,13 +75,23 @@ class WaveAbsorption final : public Effect<Dim> {
     // The level is told from its own slow mean: water at rest, and what waves pile up, must not
     // make the piston drift.
     const double slow = 5 * waves_.period;
-    *mean_ = *begun_ == 0 ? seen : *mean_ + (seen - *mean_) * -std::expm1(-passed / slow);
-    *begun_ = 1;
+    mean_ = !begun_ ? seen : mean_ + (seen - mean_) * -std::expm1(-passed / slow);
+    begun_ = true;
     const double fastest = waves_.absorbing_rate() * waves_.height;
-    state_->wanted = std::clamp(-waves_.absorbing_rate() * (seen - *mean_) - state_->shift / slow,
+    state_->wanted = std::clamp(-waves_.absorbing_rate() * (seen - mean_) - state_->shift / slow,
                                 -fastest, fastest);
   }
 
+  void save(StateSink& sink, const std::string& at) const override {
+    sink.put_number(at + "mean", mean_);
+    sink.put_count(at + "begun", begun_ ? 1 : 0);
+    sink.put_number(at + "time", last_);
+  }
+  void load(const StateSource& source, const std::string& at) override {
+    mean_ = source.number(at + "mean");
+    begun_ = source.count(at + "begun") != 0;
+    last_ = source.number(at + "time");
+  }
   std::size_t bytes() const override { return gauges_.capacity() * sizeof(Vec3); }
   void tally(std::vector<Tally>& out) const override {
     out.push_back(
@@ -170,8 +175,10 @@ class WaveAbsorption final : public Effect<Dim> {
   Kernel<Dim> kernel_;
   Vec3 front_ = Vec3::Zero();  ///< a point of the piston's face at rest
   std::vector<Vec3> gauges_;   ///< along the face, from there
-  std::optional<PistonState> state_;
-  double *mean_ = nullptr, *begun_ = nullptr, *last_ = nullptr;
+  PistonState* state_ = nullptr;
+  double mean_ = 0;     ///< slow mean of what the gauges see, m
+  bool begun_ = false;  ///< whether there is one
+  double last_ = 0;     ///< time of the last call, s
   ParticleSet<Dim>* water_ = nullptr;
 };
 

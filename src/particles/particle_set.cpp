@@ -93,6 +93,7 @@ template <int Dim>
 void ParticleSet<Dim>::save(StateSink& sink) const {
   const std::string at = "sets/" + name_ + "/";
   sink.put_count(at + "size", size_);
+  sink.put_count(at + "next_id", static_cast<std::int64_t>(next_id_));
   for (const auto& [name, field] : fields_)
     if (field->spec().lifetime != Lifetime::derived) field->save(sink, at + name);
 }
@@ -101,6 +102,7 @@ template <int Dim>
 void ParticleSet<Dim>::load(const StateSource& source) {
   const std::string at = "sets/" + name_ + "/";
   resize(source.count(at + "size"));
+  next_id_ = static_cast<Id>(source.count(at + "next_id"));
   for (auto& [name, field] : fields_)
     if (field->spec().lifetime != Lifetime::derived) field->load(source, at + name);
 }
@@ -119,6 +121,16 @@ template <int Dim>
 void ParticleSet<Dim>::resize(Index n) {
   size_ = n;
   for (auto& [name, field] : fields_) field->resize(n);
+  next_id_ = std::max(next_id_, static_cast<Id>(n));  // they are numbered by their index
+}
+
+template <int Dim>
+Index ParticleSet<Dim>::append(Index n) {
+  const Index first = size_;
+  size_ += n;
+  for (auto& [name, field] : fields_) field->resize(size_);
+  for (Index i = first; i < size_; ++i) ids()[i] = next_id_++;
+  return first;
 }
 
 template <int Dim>

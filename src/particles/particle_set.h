@@ -45,6 +45,9 @@ class ParticleSet {
   const std::map<std::string, std::unique_ptr<FieldBase>>& fields() const { return fields_; }
 
   void resize(Index n);
+  /// Adds n particles at the end, with ids that no particle of the set has had; returns the index
+  /// of the first. All other fields are for the caller to fill.
+  Index append(Index n);
   /// New particle k is old particle order[k]; a shorter order removes the particles it leaves out.
   void permute(std::span<const std::uint32_t> order);
   /// Memory of all fields and of the spare ones [bytes].
@@ -66,6 +69,7 @@ class ParticleSet {
   std::string name_, phase_;
   double spacing_, h_;
   Index size_ = 0;
+  Id next_id_ = 0;  // greater than all that were given
   std::map<std::string, std::unique_ptr<FieldBase>> fields_;
   // One per type of field: sorting changes places with it, and allocates nothing.
   std::map<FieldType, std::unique_ptr<FieldBase>> spares_;

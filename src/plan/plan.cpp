@@ -222,6 +222,7 @@ void Plan<Dim>::save(StateSink& sink) const {
   for (const auto& e : effects_) {
     sink.put_count("effects/" + e.label + "/calls", e.calls);
     sink.put_number("effects/" + e.label + "/seconds", e.seconds);
+    e.effect->save(sink, "effects/" + e.label + "/state/");
     if (e.walked_list == nullptr) continue;
     sink.put_number("effects/" + e.label + "/walked", e.walked);
     sink.put_number("effects/" + e.label + "/in_set", e.in_set);
@@ -231,6 +232,7 @@ void Plan<Dim>::save(StateSink& sink) const {
 template <int Dim>
 void Plan<Dim>::load(const StateSource& source) {
   for (auto& e : effects_) {
+    e.effect->load(source, "effects/" + e.label + "/state/");
     // An observer may be new: what is asked of a run may change when it goes on.
     if (!source.has("effects/" + e.label + "/calls")) continue;
     e.calls = source.count("effects/" + e.label + "/calls");

@@ -59,7 +59,8 @@ class Plan {
   const std::vector<PlannedEffect<Dim>>& effects() const { return effects_; }
   const std::vector<UnusedEffect>& unused() const { return unused_; }
 
-  /// Calls and seconds of the time table, so that they go on after a restart.
+  /// What effects keep from step to step; calls and seconds of the time table, so that they go on
+  /// after a restart.
   void save(StateSink& sink) const;
   void load(const StateSource& source);
 

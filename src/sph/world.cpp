@@ -2,13 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <stdexcept>
-
-#include "core/error.h"
 #include "core/parallel.h"
 #include "deck/expression.h"
-#include "sph/parameters.h"
 
 namespace sphgeo {
 namespace {
@@ -19,9 +14,8 @@ std::span<const Vec<Dim>> places_of(const ParticleSet<Dim>& set) {
   return {x.data(), static_cast<std::size_t>(x.size())};
 }
 
-template <int Dim>
-std::span<const Id> ids_of(const ParticleSet<Dim>& set) {
-  return {set.ids().data(), static_cast<std::size_t>(set.ids().size())};
+std::string packed_path(const std::string& set, int axis) {
+  return fmt::format("arrangement/{}/{}/packed", set, axis);
 }
 
 }  // namespace
@@ -43,17 +37,6 @@ Vec<Dim> World<Dim>::pull(const Vec<Dim>& at) const {
 }
 
 template <int Dim>
-ParticleSet<Dim>& World<Dim>::add_set(std::string name, std::string phase, double spacing, double h,
-                                      bool moves) {
-  sets_.push_back(std::make_unique<ParticleSet<Dim>>(name, std::move(phase), spacing, h));
-  for (const FieldSpec* spec : {&fields::id, &fields::part, &fields::position, &fields::velocity})
-    sets_.back()->require(*spec);
-  moves_[name] = moves;
-  lost_[name] = 0;
-  return *sets_.back();
-}
-
-template <int Dim>
 ParticleSet<Dim>& World<Dim>::add_solids(std::string name, double spacing, double h) {
   ParticleSet<Dim>& set = add_set(std::move(name), "solid", spacing, h, true);
   for (const FieldSpec* spec :
@@ -63,148 +46,53 @@ ParticleSet<Dim>& World<Dim>::add_solids(std::string name, double spacing, doubl
 }
 
 template <int Dim>
-ParticleSet<Dim>* World<Dim>::find(const std::string& name) const {
-  for (const auto& s : sets_)
-    if (s->name() == name) return s.get();
-  return nullptr;
-}
-
-template <int Dim>
-ParticleSet<Dim>& World<Dim>::set(const std::string& name) const {
-  if (ParticleSet<Dim>* s = find(name)) return *s;
-  throw std::logic_error("no particle set " + name);
-}
-
-template <int Dim>
-void World<Dim>::require_list(const std::string& target, const std::string& source) {
-  lists_.try_emplace({target, source});
-}
-
-template <int Dim>
-NeighborList& World<Dim>::list(const std::string& target, const std::string& source) {
-  return lists_.at({target, source});
-}
-
-template <int Dim>
 void World<Dim>::set_domain(const Vec<Dim>& lo, const Vec<Dim>& hi) {
-  lo_ = lo;
-  hi_ = hi;
-  frame_ = FixedPoint<Dim>::fit(lo, hi, reach());
-}
-
-template <int Dim>
-double World<Dim>::reach() const {
-  double h = 0;
-  for (const auto& s : sets_) h = std::max(h, s->smoothing_length());
-  return 2 * h;
-}
-
-template <int Dim>
-void World<Dim>::remove_lost(ParticleSet<Dim>& set) {
-  const auto& x = set.vector(fields::position);
-  const auto outside = [&](Index i) {
-    // Written so that NaN counts as outside.
-    return !((x[i].array() >= lo_.array()).all() && (x[i].array() <= hi_.array()).all());
-  };
-  const double count = ordered_sum(set.size(), [&](Index i) { return outside(i) ? 1.0 : 0.0; });
-  if (count == 0) return;
-  for (Index i = 0; i < set.size(); ++i) {
-    if (!outside(i)) continue;
-    const bool lost = x[i].allFinite();  // what has no place at all has not left: it is broken
-    if (lost && parameters_->numerics.outside != OutsideDomain::stop && set.phase() != "solid")
-      continue;
-    const Vec3 at = to_space<Dim>(x[i]);
-    throw UnstableError(
-        lost ? fmt::format("particle {} of set '{}' left the domain at ({:.4g}, {:.4g}, {:.4g}) m, "
-                           "t = {:.6g} s; {}",
-                           set.ids()[i], set.name(), at.x(), at.y(), at.z(), clock.time,
-                           set.phase() == "solid"
-                               ? "a solid cannot lose particles: give a larger numerics.domain_min "
-                                 "or domain_max, or something that holds it"
-                               : "numerics.outside is 'stop'")
-             : fmt::format("the position of particle {} of set '{}' is not finite at t = {:.6g} s",
-                           set.ids()[i], set.name(), clock.time),
-        {lost ? "lost" : "not_finite", "", set.name(), set.ids()[i], at, clock.time});
-  }
-  std::vector<std::uint32_t> keep;
-  keep.reserve(static_cast<std::size_t>(set.size()));
-  for (Index i = 0; i < set.size(); ++i)
-    if (!outside(i)) keep.push_back(static_cast<std::uint32_t>(i));
-  lost_[set.name()] += set.size() - static_cast<Index>(keep.size());
-  set.permute(keep);
+  sets_.set_domain(lo, hi);
+  neighborhoods_.fit(lo, hi, sets_.reach());
 }
 
 template <int Dim>
 void World<Dim>::rearrange() {
   ++arrangement_;
-  for (auto& s : sets_) {
-    const bool moves = moves_[s->name()];
-    if (!moves && grids_[s->name()].size() == s->size()) continue;
-    if (moves) remove_lost(*s);
+  for (auto& s : sets()) {
+    const bool moves = sets_.moves(s->name());
+    if (!moves && neighborhoods_.has_grid(s->name()) && grid(s->name()).size() == s->size())
+      continue;
+    if (moves) sets_.remove_lost(*s, parameters_->numerics.outside, clock.time);
     if (s->phase() == "solid") {
       arrange_solids(*s);
       continue;
     }
     sort(*s, places_of(*s));
-    if (records_.contains({s->name(), 0})) pack_positions(*s);
+    if (packed(s->name())) pack_positions(*s);
   }
-  for (auto& [key, list] : lists_) build_list(key, list, places_of(set(key.first)));
+  neighborhoods_.build_lists(sets_);
 }
 
-// Solids are sorted once, by their reference positions, which also find their neighbors for good;
-// the grid is that of the places they are at.
+// Solids are sorted once; the grid is that of the places they are at.
 template <int Dim>
 void World<Dim>::arrange_solids(ParticleSet<Dim>& set) {
-  const auto list = reference_lists_.find(set.name());
-  const bool first = !grids_.contains(set.name());
-  if (first) {
-    CellGrid<Dim> rest;
-    const auto& x = set.vector(fields::reference_position);
-    const auto places = [&] {
-      return std::span<const Vec<Dim>>(x.data(), static_cast<std::size_t>(x.size()));
-    };
-    rest.build(places(), frame_, 2 * set.smoothing_length(), ids_of(set));
-    set.permute(rest.order());
-    rest.set_sorted();
-    for (auto& [key, record] : records_) {
-      if (key.first != set.name()) continue;
-      if (single_) record.single.resize(set.size(), frame_);
-      else record.full.resize(set.size(), frame_);
-    }
-    if (list != reference_lists_.end()) {
-      list->second.template build<Dim>(places(), rest, 2 * set.smoothing_length(), Pairing::within);
-      const auto& part = set.tag(fields::part);
-      const SolidParameters& solids = parameters_->solids;
-      list->second.filter(
-          [&](Index i, Index j) { return part[i] == part[j] && !solids[part[i]].rigid(); });
-    }
+  if (!neighborhoods_.has_grid(set.name())) {
+    neighborhoods_.sort_at_rest(set, parameters_->solids);
+    resize_records(set);
   }
-  grids_[set.name()].build(places_of(set), frame_, reach(), ids_of(set));
+  neighborhoods_.place(set, sets_.reach());
 }
 
 // By the cells of the places `at`, then by id; makes room in the records.
 template <int Dim>
 void World<Dim>::sort(ParticleSet<Dim>& set, std::span<const Vec<Dim>> at) {
-  CellGrid<Dim>& grid = grids_[set.name()];
-  grid.build(at, frame_, reach(), ids_of(set));
-  set.permute(grid.order());
-  grid.set_sorted();
-  for (auto& [key, record] : records_) {
-    if (key.first != set.name()) continue;
-    if (single_) record.single.resize(set.size(), frame_);
-    else record.full.resize(set.size(), frame_);
-  }
+  neighborhoods_.sort(set, at, sets_.reach());
+  resize_records(set);
 }
 
 template <int Dim>
-void World<Dim>::build_list(const std::pair<std::string, std::string>& key, NeighborList& list,
-                            std::span<const Vec<Dim>> at) {
-  // Section 3.5: pairs of different sets use the larger smoothing length, so that both see each
-  // other.
-  const double radius =
-      2 * std::max(set(key.first).smoothing_length(), set(key.second).smoothing_length());
-  list.template build<Dim>(at, grids_.at(key.second), radius,
-                           key.first == key.second ? Pairing::within : Pairing::across);
+void World<Dim>::resize_records(const ParticleSet<Dim>& set) {
+  for (auto& [key, record] : records_) {
+    if (key.first != set.name()) continue;
+    if (single_) record.single.resize(set.size(), neighborhoods_.frame());
+    else record.full.resize(set.size(), neighborhoods_.frame());
+  }
 }
 
 template <int Dim>
@@ -218,142 +106,83 @@ void World<Dim>::pack_positions(ParticleSet<Dim>& set) {
 
 template <int Dim>
 std::size_t World<Dim>::bytes() const {
-  std::size_t sum = 0;
-  for (const auto& s : sets_) sum += s->bytes();
+  std::size_t sum = sets_.bytes() + neighborhoods_.bytes();
   for (const auto& [name, r] : records_) sum += r.single.bytes() + r.full.bytes();
-  for (const auto& [name, g] : grids_) sum += g.bytes();
-  for (const auto& [key, l] : lists_) sum += l.bytes();
-  for (const auto& [key, l] : reference_lists_) sum += l.bytes();
-  for (const auto& [key, w] : reference_weights_) sum += w.bytes();
   return sum;
 }
 
 template <int Dim>
 void World<Dim>::save(StateSink& sink) const {
-  sink.put_number("clock/time", clock.time);
-  sink.put_number("clock/dt_acoustic", clock.dt_acoustic);
-  sink.put_number("clock/dt_advection", clock.dt_advection);
-  sink.put_count("clock/advection_steps", clock.advection_steps);
-  sink.put_count("clock/acoustic_steps", clock.acoustic_steps);
-  sink.put_count("clock/solid_steps", clock.solid_steps);
-  sink.put("domain/lo", std::span<const double>(lo_.data(), Dim));
-  sink.put("domain/hi", std::span<const double>(hi_.data(), Dim));
-  for (const auto& [name, n] : lost_) sink.put_count("lost/" + name, n);
-  for (const auto& [name, number] : kept_) sink.put_number("kept/" + name, number);
-  for (const auto& [name, book] : exchanged_) {
-    const std::string at = "exchanged/" + name + "/";
-    sink.put_number(at + "entered", book.entered);
-    sink.put_number(at + "left", book.left);
-    sink.put_number(at + "mass", book.mass);
-    sink.put(at + "momentum", std::span<const double>(book.momentum.data(), Dim));
-    sink.put_number(at + "energy", book.energy);
-  }
-  for (const auto& s : sets_) s->save(sink);
+  clock.save(sink);
+  sets_.save(sink);
+  ledger_.save(sink);
+  pistons_.save(sink);
 }
 
 template <int Dim>
 void World<Dim>::load(const StateSource& source) {
-  clock.time = source.number("clock/time");
-  clock.dt_acoustic = source.number("clock/dt_acoustic");
-  clock.dt_advection = source.number("clock/dt_advection");
-  clock.advection_steps = source.count("clock/advection_steps");
-  clock.acoustic_steps = source.count("clock/acoustic_steps");
-  clock.solid_steps = source.count("clock/solid_steps");
-  Vec<Dim> lo, hi;
-  source.get("domain/lo", std::span<double>(lo.data(), Dim));
-  source.get("domain/hi", std::span<double>(hi.data(), Dim));
-  set_domain(lo, hi);
-  for (auto& [name, n] : lost_) n = source.count("lost/" + name);
-  for (auto& [name, number] : kept_) number = source.number("kept/" + name);
-  for (auto& [name, book] : exchanged_) {
-    const std::string at = "exchanged/" + name + "/";
-    book.entered = source.number(at + "entered");
-    book.left = source.number(at + "left");
-    book.mass = source.number(at + "mass");
-    source.get(at + "momentum", std::span<double>(book.momentum.data(), Dim));
-    book.energy = source.number(at + "energy");
-  }
-  for (auto& s : sets_) s->load(source);
-  grids_.clear();  // also those of sets at rest are to be built anew
-}
-
-// The integers that the grid was built from.
-template <int Dim>
-std::vector<Vec<Dim>> World<Dim>::arranged_places(const std::string& set) const {
-  const CellGrid<Dim>& grid = grids_.at(set);
-  std::vector<Vec<Dim>> at(static_cast<std::size_t>(grid.size()));
-  parallel_for(grid.size(), [&](Index i) {
-    std::int32_t fixed[Dim];
-    for (int d = 0; d < Dim; ++d) fixed[d] = grid.place_coordinate(d)[i];
-    at[static_cast<std::size_t>(i)] = frame_.place_of(fixed);
-  });
-  return at;
+  clock.load(source);
+  sets_.load(source);
+  neighborhoods_.fit(domain_lo(), domain_hi(), sets_.reach());
+  neighborhoods_.forget_grids();
+  ledger_.load(source);
+  pistons_.load(source);
 }
 
 template <int Dim>
 void World<Dim>::save_arrangement(StateSink& sink) const {
-  for (const auto& s : sets_) {
-    if (!moves_.at(s->name()) || s->phase() == "solid") continue;
-    const auto n = static_cast<std::size_t>(s->size());
-    const CellGrid<Dim>& grid = grids_.at(s->name());
+  for (const auto& s : sets()) {
+    if (!moves(s->name()) || s->phase() == "solid") continue;
+    neighborhoods_.save_positions(sink, s->name());
     const auto records = records_.find({s->name(), 0});
-    for (int d = 0; d < Dim; ++d) {
-      const std::string at = fmt::format("arrangement/{}/{}/", s->name(), d);
-      sink.put(at + "listed", std::span<const std::int32_t>(grid.place_coordinate(d), n));
-      if (records == records_.end()) continue;
-      const auto put = [&](const auto& r) {
-        std::vector<typename std::decay_t<decltype(r)>::Stored> stored(n);
+    if (records == records_.end()) continue;
+    const auto put = [&](const auto& r) {
+      const auto n = static_cast<std::size_t>(s->size());
+      std::vector<typename std::decay_t<decltype(r)>::Stored> stored(n);
+      for (int d = 0; d < Dim; ++d) {
         for (std::size_t i = 0; i < n; ++i) stored[i] = r.stored_position(static_cast<Index>(i), d);
-        sink.put(at + "packed", stored);
-      };
-      if (single_) put(records->second.single);
-      else put(records->second.full);
-    }
+        sink.put(packed_path(s->name(), d), stored);
+      }
+    };
+    if (single_) put(records->second.single);
+    else put(records->second.full);
   }
 }
 
 template <int Dim>
 void World<Dim>::load_arrangement(const StateSource& source) {
   ++arrangement_;
-  for (auto& s : sets_) {
-    const auto n = static_cast<std::size_t>(s->size());
-    const bool packed = records_.contains({s->name(), 0});
+  for (auto& s : sets()) {
     if (s->phase() == "solid") {
       arrange_solids(*s);
       continue;
     }
-    if (!moves_[s->name()]) {
+    if (!moves(s->name())) {
       sort(*s, places_of(*s));
-      if (packed) pack_positions(*s);
+      if (packed(s->name())) pack_positions(*s);
       continue;
     }
-    std::vector<Vec<Dim>> places(n);
-    std::vector<std::int32_t> fixed[Dim];
-    for (int d = 0; d < Dim; ++d) {
-      fixed[d].resize(n);
-      source.get(fmt::format("arrangement/{}/{}/listed", s->name(), d),
-                 std::span<std::int32_t>(fixed[d]));
-    }
-    parallel_for(s->size(), [&](Index i) {
-      std::int32_t at[Dim];
-      for (int d = 0; d < Dim; ++d) at[d] = fixed[d][static_cast<std::size_t>(i)];
-      places[static_cast<std::size_t>(i)] = frame_.place_of(at);
-    });
-    sort(*s, places);  // they are sorted: nobody changes place
-    if (!packed) continue;
-    const auto get = [&](auto& r) {
-      std::vector<typename std::decay_t<decltype(r)>::Stored> stored(n);
-      for (int d = 0; d < Dim; ++d) {
-        source.get(fmt::format("arrangement/{}/{}/packed", s->name(), d), std::span(stored));
-        for (std::size_t i = 0; i < n; ++i)
-          r.set_stored_position(static_cast<Index>(i), d, stored[i]);
-      }
-    };
-    RecordPair<Dim>& records = records_.at({s->name(), 0});
-    if (single_) get(records.single);
-    else get(records.full);
+    // They are sorted: nobody changes place.
+    sort(*s, neighborhoods_.load_positions(source, s->name(), s->size()));
+    if (packed(s->name())) load_packed(source, s->name());
   }
-  for (auto& [key, list] : lists_) build_list(key, list, arranged_places(key.first));
+  neighborhoods_.rebuild_lists(sets_);
+}
+
+template <int Dim>
+void World<Dim>::load_packed(const StateSource& source, const std::string& set) {
+  const auto get = [&](auto& r) {
+    const auto n = static_cast<std::size_t>(this->set(set).size());
+    std::vector<typename std::decay_t<decltype(r)>::Stored> stored(n);
+    for (int d = 0; d < Dim; ++d) {
+      source.get(packed_path(set, d), std::span(stored));
+      for (std::size_t i = 0; i < n; ++i)
+        r.set_stored_position(static_cast<Index>(i), d, stored[i]);
+    }
+  };
+  RecordPair<Dim>& records = records_.at({set, 0});
+  if (single_) get(records.single);
+  else get(records.full);
 }
 
 template class World<2>;

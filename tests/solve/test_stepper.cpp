@@ -171,12 +171,14 @@ TEST_SUITE("solve") {
           CheckpointWriter file;
           first.world.save(file);
           first.stepper->save(file);
+          first.plan->save(file);
           const test::TemporaryFolder folder;
           file.write(folder / "c.h5", "");
           second.plan_it();
           const CheckpointReader reader(folder / "c.h5");
           second.world.load(reader);
           second.stepper->load(reader);
+          second.plan->load(reader);
           until(second, 20);
           CAPTURE(stop);
           CHECK(second.checksum() == whole.checksum());
