@@ -5,6 +5,7 @@
 #include <set>
 #include <string>
 
+#include "support/memory_state.h"
 #include "support/rig.h"
 
 using namespace sphgeo;
@@ -102,6 +103,26 @@ TEST_SUITE("effects") {
     run(low, 0);
     CHECK(low.water().size() == 70);
     CHECK(low.world.exchanged("lake").entered == 10);
+  }
+
+  TEST_CASE("an inlet that is taken up again goes on in the middle of a layer") {
+    const std::string deck = scene(
+        "boundaries: [{name: cloud, type: inlet, min: [0, 0, 1], max: [0.5, 0.2, 1], velocity: "
+        "[0, 0, -0.7]}]\n");
+    Rig<2> whole(deck), first(deck), second(deck);
+    whole.plan_it();
+    whole.advance(9);
+    first.plan_it();
+    first.advance(4);
+    test::MemoryState state;
+    first.world.save(state);
+    first.plan->save(state);
+    second.plan_it();
+    second.world.load(state);
+    second.plan->load(state);
+    second.advance(5);
+    CHECK(second.water().size() > 0);
+    CHECK(second.checksum() == whole.checksum());
   }
 
   TEST_CASE("mistakes of inlets, reservoirs and outlets are found") {
