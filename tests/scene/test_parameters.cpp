@@ -10,7 +10,7 @@ using namespace sphgeo;
 
 namespace {
 
-const char* const deck =
+const char* const deck_of_all_phases =
     "dimension: 2\nresolution: 0.1\nend_time: 1\n"
     "materials:\n"
     "  - {name: water, type: water, density: 1020, viscosity: 2e-3, sound_speed: 25}\n"
@@ -43,7 +43,7 @@ const char* const deck =
 
 TEST_SUITE("scene") {
   TEST_CASE("the table holds what the deck says") {
-    const Model model = read_deck_text(deck);
+    const Model model = read_deck_text(deck_of_all_phases);
     Diagnostics found;
     const Scene<2> scene = build_scene<2>(model, found);
     CAPTURE(found.render());
@@ -105,7 +105,7 @@ TEST_SUITE("scene") {
   }
 
   TEST_CASE("soil that all rests, or is led, is told apart from soil that moves by forces") {
-    Model model = read_deck_text(deck);
+    Model model = read_deck_text(deck_of_all_phases);
     const std::vector<double> densities(model.bodies.size(), 1600.0);
     model.bodies[1].material = "bedrock";
     const SoilParameters rests = compile_soil(model, densities);
