@@ -275,7 +275,8 @@ std::string Guard<Dim>::suspect(const ParticleSet<Dim>& set, Index i,
       name.empty() ? "; it has entered through a boundary"
                    : fmt::format("; it belongs to {} '{}' ({}:{}:{})", wall ? "boundary" : "body",
                                  name, at.file, at.line, at.column);
-  if (world_.model().body_force && !world_.pull(set.vector(fields::position)[i]).allFinite()) {
+  if (world_.model().body_force &&
+      !world_.body_acceleration(set.vector(fields::position)[i]).allFinite()) {
     const Place force = model.place_of("body_force");
     out += fmt::format("; body_force is not finite there ({}:{}:{})", force.file, force.line,
                        force.column);

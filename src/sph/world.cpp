@@ -32,7 +32,7 @@ World<Dim>::World(const Model& model)
       frozen_(model.numerics.pair_geometry == "frozen") {}
 
 template <int Dim>
-Vec<Dim> World<Dim>::pull(const Vec<Dim>& at) const {
+Vec<Dim> World<Dim>::body_acceleration(const Vec<Dim>& at) const {
   if (!model_.body_force) return gravity_;
   const auto& f = *model_.body_force;
   const Vec3 place = to_space<Dim>(at);
@@ -143,7 +143,7 @@ void World<Dim>::rearrange() {
       continue;
     }
     sort(*s, places_of(*s));
-    if (records_.contains({s->name(), 0})) pack_positions(*s);
+    if (records_.holds(s->name(), 0)) pack_positions(*s);
   }
   for (auto& [key, list] : lists_) build_list(key, list, places_of(set(key.first)));
 }
@@ -170,11 +170,7 @@ void World<Dim>::arrange_solids(ParticleSet<Dim>& set) {
     rest.build(places(), frame_, 2 * set.smoothing_length(), ids_of(set));
     set.permute(rest.order());
     rest.set_sorted();
-    for (auto& [key, record] : records_) {
-      if (key.first != set.name()) continue;
-      if (single_) record.single.resize(set.size(), frame_);
-      else record.full.resize(set.size(), frame_);
-    }
+    records_.resize(set.name(), set.size(), frame_, single_);
     if (list != reference_lists_.end()) {
       list->second.template build<Dim>(places(), rest, 2 * set.smoothing_length(), Pairing::within);
       const auto& part = set.tag(fields::part);
@@ -192,11 +188,7 @@ void World<Dim>::sort(ParticleSet<Dim>& set, std::span<const Vec<Dim>> at) {
   grid.build(at, frame_, reach(), ids_of(set));
   set.permute(grid.order());
   grid.set_sorted();
-  for (auto& [key, record] : records_) {
-    if (key.first != set.name()) continue;
-    if (single_) record.single.resize(set.size(), frame_);
-    else record.full.resize(set.size(), frame_);
-  }
+  records_.resize(set.name(), set.size(), frame_, single_);
 }
 
 template <int Dim>
@@ -214,7 +206,7 @@ template <int Dim>
 void World<Dim>::pack_positions(ParticleSet<Dim>& set) {
   const auto& x = set.vector(fields::position);
   with_pair_precision([&](auto number) {
-    auto& r = records(set.name()).template get<decltype(number)>();
+    const auto r = records_.template write<Position<Dim>, decltype(number)>(set.name());
     parallel_for(set.size(), [&](Index i) { r.set_position(i, x[i]); });
   });
 }
@@ -223,7 +215,7 @@ template <int Dim>
 std::size_t World<Dim>::bytes() const {
   std::size_t sum = 0;
   for (const auto& s : sets_) sum += s->bytes();
-  for (const auto& [name, r] : records_) sum += r.single.bytes() + r.full.bytes();
+  sum += records_.bytes();
   for (const auto& [name, g] : grids_) sum += g.bytes();
   for (const auto& [key, l] : lists_) sum += l.bytes();
   for (const auto& [key, l] : reference_lists_) sum += l.bytes();
@@ -299,18 +291,18 @@ void World<Dim>::save_arrangement(StateSink& sink) const {
     if (!moves_.at(s->name()) || s->phase() == "solid") continue;
     const auto n = static_cast<std::size_t>(s->size());
     const CellGrid<Dim>& grid = grids_.at(s->name());
-    const auto records = records_.find({s->name(), 0});
+    const bool packed = records_.holds(s->name(), 0);
     for (int d = 0; d < Dim; ++d) {
       const std::string at = fmt::format("arrangement/{}/{}/", s->name(), d);
       sink.put(at + "listed", std::span<const std::int32_t>(grid.place_coordinate(d), n));
-      if (records == records_.end()) continue;
+      if (!packed) continue;
       const auto put = [&](const auto& r) {
         std::vector<typename std::decay_t<decltype(r)>::Stored> stored(n);
         for (std::size_t i = 0; i < n; ++i) stored[i] = r.stored_position(static_cast<Index>(i), d);
         sink.put(at + "packed", stored);
       };
-      if (single_) put(records->second.single);
-      else put(records->second.full);
+      if (single_) put(records_.template array<float>(s->name(), 0));
+      else put(records_.template array<double>(s->name(), 0));
     }
   }
 }
@@ -320,7 +312,7 @@ void World<Dim>::load_arrangement(const StateSource& source) {
   ++arrangement_;
   for (auto& s : sets_) {
     const auto n = static_cast<std::size_t>(s->size());
-    const bool packed = records_.contains({s->name(), 0});
+    const bool packed = records_.holds(s->name(), 0);
     if (s->phase() == "solid") {
       arrange_solids(*s);
       continue;
@@ -352,9 +344,8 @@ void World<Dim>::load_arrangement(const StateSource& source) {
           r.set_stored_position(static_cast<Index>(i), d, stored[i]);
       }
     };
-    RecordPair<Dim>& records = records_.at({s->name(), 0});
-    if (single_) get(records.single);
-    else get(records.full);
+    if (single_) get(records_.template array<float>(s->name(), 0));
+    else get(records_.template array<double>(s->name(), 0));
   }
   for (auto& [key, list] : lists_) build_list(key, list, arranged_places(key.first));
 }

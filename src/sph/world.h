@@ -5,7 +5,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -15,7 +14,7 @@
 #include "sph/fixed_point.h"
 #include "sph/neighbor_list.h"
 #include "sph/pair_weights.h"
-#include "sph/records.h"
+#include "sph/record_store.h"
 
 namespace sphgeo {
 
@@ -32,19 +31,6 @@ struct Clock {
   long solid_steps = 0;
   /// Begin of the running step of solids, s.
   double solid_time() const { return time + solid_step * dt_solid; }
-};
-
-/// Packed records of one set in the precision of the pair sums; the other one stays empty.
-template <int Dim>
-struct RecordPair {
-  Records<Dim, float> single;
-  Records<Dim, double> full;
-
-  template <class T>
-  Records<Dim, T>& get() {
-    if constexpr (std::is_same_v<T, float>) return single;
-    else return full;
-  }
 };
 
 /// What came in and went out through one boundary so far; per metre of depth in 2D.
@@ -73,7 +59,7 @@ class World {
   const Model& model() const { return model_; }
   const Vec<Dim>& gravity() const { return gravity_; }  ///< m/s2
   /// Gravity and the deck's body force at a place, now, m/s2.
-  Vec<Dim> pull(const Vec<Dim>& at) const;
+  Vec<Dim> body_acceleration(const Vec<Dim>& at) const;
   Clock clock;
 
   /// Adds a set. `moves` is false for sets whose particles never change place.
@@ -109,8 +95,9 @@ class World {
   bool single_precision() const { return single_; }
   /// Whether pair sums see positions of the last rearrangement (true) or of now.
   bool frozen_geometry() const { return frozen_; }
-  /// Records number `which` of a set: kept by the effects, sized by rearrange().
-  RecordPair<Dim>& records(const std::string& set, int which = 0) { return records_[{set, which}]; }
+  /// Packed records: written by the effects, sized by rearrange().
+  RecordStore<Dim>& records() { return records_; }
+  const RecordStore<Dim>& records() const { return records_; }
 
   /// Sets the box outside of which particles are lost and fits the fixed-point frame to it.
   void set_domain(const Vec<Dim>& lo, const Vec<Dim>& hi);
@@ -172,7 +159,7 @@ class World {
   std::map<std::pair<std::string, std::string>, NeighborList> lists_;
   std::map<std::string, NeighborList> reference_lists_;
   std::map<std::string, PairWeights<Dim>> reference_weights_;
-  std::map<std::pair<std::string, int>, RecordPair<Dim>> records_;
+  RecordStore<Dim> records_;
   std::map<std::string, Index> lost_;
   std::map<std::string, Exchanged<Dim>> exchanged_;
   std::map<std::string, double> kept_;
@@ -183,5 +170,15 @@ class World {
 
 extern template class World<2>;
 extern template class World<3>;
+
+/// Records of type R of a set in precision T, to read or to pack (see RecordStore).
+template <class R, class T, int Dim>
+RecordSource<R, T> read_records(World<Dim>& world, const std::string& set) {
+  return world.records().template read<R, T>(set);
+}
+template <class R, class T, int Dim>
+RecordPacking<R, T> write_records(World<Dim>& world, const std::string& set) {
+  return world.records().template write<R, T>(set);
+}
 
 }  // namespace sphgeo
