@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "boundaries/boundary.h"
+#include "core/indices_where.h"
 #include "core/parallel.h"
 #include "effects/effect.h"
 #include "effects/wall_records.h"
@@ -116,10 +117,11 @@ class WallMotion final : public Effect<Dim> {
   void find_moving(const World<Dim>& world) {
     if (arrangement_ == world.arrangement()) return;
     arrangement_ = world.arrangement();
-    moving_.clear();
     const auto& part = walls_->tag(fields::part);
-    for (Index i = 0; i < walls_->size(); ++i)
-      if (motions_[static_cast<std::size_t>(part[i])]) moving_.push_back(i);
+    const auto moving = indices_where(walls_->size(), [&](Index i) {
+      return motions_[static_cast<std::size_t>(part[i])] != nullptr;
+    });
+    moving_.assign(moving.begin(), moving.end());
   }
 
   std::vector<const Motion*> motions_;  ///< by number of the boundary; null: it rests

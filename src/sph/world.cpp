@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/indices_where.h"
 #include "core/parallel.h"
 
 namespace sphgeo {
@@ -106,8 +107,7 @@ void World<Dim>::remove_lost(ParticleSet<Dim>& set) {
   };
   const double count = ordered_sum(set.size(), [&](Index i) { return outside(i) ? 1.0 : 0.0; });
   if (count == 0) return;
-  for (Index i = 0; i < set.size(); ++i) {
-    if (!outside(i)) continue;
+  for (const std::uint32_t i : indices_where(set.size(), outside)) {
     const bool lost = x[i].allFinite();  // what has no place at all has not left: it is broken
     if (lost && model_.numerics.outside != "stop" && set.phase() != "solid") continue;
     const Vec3 at = to_space<Dim>(x[i]);
@@ -123,10 +123,8 @@ void World<Dim>::remove_lost(ParticleSet<Dim>& set) {
                            set.ids()[i], set.name(), clock.time),
         {lost ? "lost" : "not_finite", "", set.name(), set.ids()[i], at, clock.time});
   }
-  std::vector<std::uint32_t> keep;
-  keep.reserve(static_cast<std::size_t>(set.size()));
-  for (Index i = 0; i < set.size(); ++i)
-    if (!outside(i)) keep.push_back(static_cast<std::uint32_t>(i));
+  const std::vector<std::uint32_t> keep =
+      indices_where(set.size(), [&](Index i) { return !outside(i); });
   lost_[set.name()] += set.size() - static_cast<Index>(keep.size());
   set.permute(keep);
 }
@@ -306,7 +304,9 @@ void World<Dim>::save_arrangement(StateSink& sink) const {
       if (records == records_.end()) continue;
       const auto put = [&](const auto& r) {
         std::vector<typename std::decay_t<decltype(r)>::Stored> stored(n);
-        for (std::size_t i = 0; i < n; ++i) stored[i] = r.stored_position(static_cast<Index>(i), d);
+        parallel_for(s->size(), [&](Index i) {
+          stored[static_cast<std::size_t>(i)] = r.stored_position(i, d);
+        });
         sink.put(at + "packed", stored);
       };
       if (single_) put(records->second.single);
@@ -348,8 +348,9 @@ void World<Dim>::load_arrangement(const StateSource& source) {
       std::vector<typename std::decay_t<decltype(r)>::Stored> stored(n);
       for (int d = 0; d < Dim; ++d) {
         source.get(fmt::format("arrangement/{}/{}/packed", s->name(), d), std::span(stored));
-        for (std::size_t i = 0; i < n; ++i)
-          r.set_stored_position(static_cast<Index>(i), d, stored[i]);
+        parallel_for(s->size(), [&](Index i) {
+          r.set_stored_position(i, d, stored[static_cast<std::size_t>(i)]);
+        });
       }
     };
     RecordPair<Dim>& records = records_.at({s->name(), 0});
