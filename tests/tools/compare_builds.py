@@ -64,6 +64,8 @@ def checksums(program, deck, options, args, end):
     encoded = {name: value if isinstance(value, bytes) else json.dumps(value, sort_keys=True).encode()
                for name, value in found.items()}
     for name in encoded:
+        # Reference tables are named by their whole path.
+        encoded[name] = encoded[name].replace(str(ROOT).encode(), b"PROJECT") if name == "resolved.yaml" else encoded[name]
         if name.endswith(".csv"):  # comments may read better than they did
             encoded[name] = b"\n".join(line for line in encoded[name].split(b"\n") if not line.startswith(b"#"))
     return {"end": end, "files": {name: hashlib.sha256(value).hexdigest() for name, value in encoded.items()}}
