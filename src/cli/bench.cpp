@@ -154,7 +154,8 @@ Measured measure(const std::string& deck, int thread_count, const BenchOptions& 
   const auto acoustic_seconds = [&] {
     double s = 0;
     for (const auto& e : plan.effects())
-      if (e.info.stage != Stage::reinitialize && e.info.stage != Stage::observe) s += e.seconds;
+      if (e.info.stage != Stage::reinitialize && e.info.stage != Stage::observe)
+        s += e.spent.seconds;
     return s;
   };
   stepper.run(0.0, {[] { return false; }});  // first lists, outside of the measurement
@@ -162,7 +163,7 @@ Measured measure(const std::string& deck, int thread_count, const BenchOptions& 
     const double calibration = calibrate();
     const auto start = clock_type::now();
     const double processor0 = processor_seconds();
-    const double acoustic0 = acoustic_seconds(), search0 = stepper.seconds_rearranging();
+    const double acoustic0 = acoustic_seconds(), search0 = stepper.rearranging().seconds;
     const double updates0 = stepper.particle_updates();
     const long searches0 = stepper.rearrangements();
     stepper.run(model.end_time, {[&] {
@@ -184,7 +185,7 @@ Measured measure(const std::string& deck, int thread_count, const BenchOptions& 
     const double pairs = 2.0 * static_cast<double>(walked) / static_cast<double>(best.particles) *
                          updates / acoustic * per_core;
     best.pairs = std::max(best.pairs, pairs);
-    const double search = had * (stepper.seconds_rearranging() - search0) /
+    const double search = had * (stepper.rearranging().seconds - search0) /
                           static_cast<double>(stepper.rearrangements() - searches0) /
                           static_cast<double>(best.particles) * 1e9 * thread_count;
     best.search_ns = best.search_ns == 0 ? search : std::min(best.search_ns, search);

@@ -50,7 +50,7 @@ class Terminal final : public RunObserver {
 };
 
 void print_costs(const Summary& summary) {
-  std::cerr << render_time_table(summary.effects);
+  std::cerr << render_time_table(summary.effects, summary.threads);
   std::cerr << fmt::format(
       "{} acoustic steps, {:.3g} million particle updates per second and core on {} thread{}\n",
       summary.acoustic_steps, summary.particle_updates_per_s_per_core / 1e6, summary.threads,

@@ -1,5 +1,5 @@
 #pragma once
-// Wall time and processor time, s.
+// Time that parts of a run take: on the clock, and of the processors.
 
 #include <chrono>
 #include <ctime>
@@ -11,7 +11,35 @@ inline double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Processor time of all threads of this process so far, s.
-inline double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+/// Processor time of all threads of the program so far, s. A thread that waits for a loop or for
+/// its end looks for it for some ten microseconds before it sleeps; that counts as well.
+inline double processor_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// What a part of a run has taken so far.
+struct Spent {
+  double seconds = 0;    ///< on the clock
+  double processor = 0;  ///< of all threads together, s
+};
+
+/// Adds to `spent` what its scope takes.
+class Stopwatch {
+ public:
+  explicit Stopwatch(Spent& spent) : spent_(spent) {}
+  ~Stopwatch() {
+    spent_.processor += processor_seconds() - processor_;
+    spent_.seconds += seconds_since(start_);
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  Spent& spent_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  double processor_ = processor_seconds();
+};
 
 }  // namespace sphgeo

@@ -1,3 +1,4 @@
+#include "core/indices_where.h"
 #include "core/parallel.h"
 #include "deck/interfaces.h"
 #include "effects/exchange.h"
@@ -38,17 +39,16 @@ class OutletFlow final : public Effect<Dim> {
       };
       std::vector<char> leaves(static_cast<std::size_t>(set->size()));
       parallel_for(set->size(), [&](Index i) { leaves[static_cast<std::size_t>(i)] = inside(i); });
-      std::vector<std::uint32_t> keep;
-      for (Index i = 0; i < set->size(); ++i) {
-        if (!leaves[static_cast<std::size_t>(i)]) {
-          keep.push_back(static_cast<std::uint32_t>(i));
-          continue;
-        }
+      const auto gone = indices_where(
+          set->size(), [&](Index i) { return leaves[static_cast<std::size_t>(i)] != 0; });
+      if (gone.empty()) continue;
+      for (const std::uint32_t i : gone) {
         book.left += 1;
         book.add(-1, set->scalar(fields::mass)[i], x[i], set->vector(fields::velocity)[i],
                  world.gravity());
       }
-      if (static_cast<Index>(keep.size()) < set->size()) set->permute(keep);
+      set->permute(indices_where(
+          set->size(), [&](Index i) { return leaves[static_cast<std::size_t>(i)] == 0; }));
     }
   }
 

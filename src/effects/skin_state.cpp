@@ -57,9 +57,10 @@ class SkinState final : public Effect<Dim> {
     for (std::size_t k = 0; k < solids_.size(); ++k)
       rows_[k].assign(static_cast<std::size_t>(world.set(solids_[k]).size()), -1);
     const auto& number = skin.tag(fields::source_set);
-    for (Index s = 0; s < skin.size(); ++s)
+    parallel_for(skin.size(), [&](Index s) {
       rows_[static_cast<std::size_t>(number[s])][static_cast<std::size_t>(map_.at(s).i)] =
           static_cast<std::int32_t>(s);
+    });
     for (std::size_t k = 0; k < solids_.size(); ++k) turn_normals(world, k);
     auto& volume = skin.scalar(fields::volume);
     const auto& at_rest = skin.scalar(fields::reference_volume);

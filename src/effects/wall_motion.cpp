@@ -2,6 +2,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/indices_where.h"
 #include "core/parallel.h"
 #include "deck/motion.h"
 #include "effects/effect.h"
@@ -98,7 +99,10 @@ class WallMotion final : public Effect<Dim> {
     if (world.frozen_geometry()) return;
     world.with_pair_precision([&](auto number) {
       auto& record = world.records("walls").template get<decltype(number)>();
-      for (const Index i : moving_) record.set_position(i, x[i]);
+      parallel_for(static_cast<Index>(moving_.size()), [&](Index place) {
+        const Index i = moving_[static_cast<std::size_t>(place)];
+        record.set_position(i, x[i]);
+      });
     });
   }
   std::size_t bytes() const override { return moving_.capacity() * sizeof(Index); }
@@ -108,10 +112,11 @@ class WallMotion final : public Effect<Dim> {
   void find_moving(const World<Dim>& world) {
     if (arrangement_ == world.arrangement()) return;
     arrangement_ = world.arrangement();
-    moving_.clear();
     const auto& part = walls_->tag(fields::part);
-    for (Index i = 0; i < walls_->size(); ++i)
-      if (motions_[static_cast<std::size_t>(part[i])]) moving_.push_back(i);
+    const auto moving = indices_where(walls_->size(), [&](Index i) {
+      return motions_[static_cast<std::size_t>(part[i])] != nullptr;
+    });
+    moving_.assign(moving.begin(), moving.end());
   }
 
   std::vector<const Motion*> motions_;  ///< by number of the boundary; null: it rests

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/indices_where.h"
 #include "deck/motion.h"
 #include "effects/effect.h"
 #include "sph/kernel.h"
@@ -137,9 +138,11 @@ class WaveAbsorption final : public Effect<Dim> {
     const auto& mass = water_->scalar(fields::mass);
     const double reach = kernel_.support();
     std::vector<std::vector<Index>> near(gauges_.size());
-    for (Index i = 0; i < water_->size(); ++i) {
+    const auto in_reach = indices_where(water_->size(), [&](Index i) {
+      return !(std::abs(waves_.direction.dot(to_space<Dim>(x[i]) - at)) > reach);
+    });
+    for (const std::uint32_t i : in_reach) {
       const Vec3 p = to_space<Dim>(x[i]);
-      if (std::abs(waves_.direction.dot(p - at)) > reach) continue;
       for (std::size_t g = 0; g < gauges_.size(); ++g) {
         const Vec3 off = p - at - gauges_[g];
         if (std::hypot(off.x(), off.y()) <= reach) near[g].push_back(i);

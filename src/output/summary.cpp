@@ -61,14 +61,16 @@ Json to_json(const Summary& s) {
       {"advection", s.advection_steps}, {"acoustic", s.acoustic_steps}, {"solid", s.solid_steps}};
   out["time_s"] = number(s.time_s);
   out["wall_s"] = number(s.wall_s);
+  out["busy"] = number(s.busy);
   out["particle_updates_per_s_per_core"] = number(s.particle_updates_per_s_per_core);
   out["memory_peak_bytes"] = s.memory_peak_bytes;
   out["effects"] = Json::array();
   for (const TimeRow& r : s.effects) {
     out["effects"].push_back({{"name", r.name},
                               {"calls", r.calls},
-                              {"seconds", number(r.seconds)},
-                              {"share", number(r.share)}});
+                              {"seconds", number(r.spent.seconds)},
+                              {"share", number(r.share)},
+                              {"busy", number(r.busy)}});
     if (!r.walked_set.empty())
       out["effects"].back()["walks"] = {{"set", r.walked_set}, {"share", number(r.walked_share)}};
   }

@@ -60,6 +60,7 @@ struct Summary {
   Index advection_steps = 0, acoustic_steps = 0, solid_steps = 0;
   double time_s = 0;  ///< simulated
   double wall_s = 0;
+  double busy = 0;                             ///< processor time over wall time and threads
   double particle_updates_per_s_per_core = 0;  ///< one update = one acoustic step of one particle
   std::uint64_t memory_peak_bytes = 0;
   std::uint64_t disk_bytes = 0;      ///< of the run folder

@@ -6,39 +6,51 @@
 
 namespace sphgeo {
 
-std::vector<TimeRow> with_rest(std::vector<TimeRow> rows, double wall_s) {
-  std::erase_if(rows, [](const TimeRow& r) { return r.calls == 0 && r.seconds == 0; });
+double busy_share(const Spent& spent, int threads) {
+  return spent.seconds > 0 ? spent.processor / (spent.seconds * threads) : 0;
+}
+
+std::vector<TimeRow> with_rest(std::vector<TimeRow> rows, const Spent& whole, int threads) {
+  std::erase_if(rows, [](const TimeRow& r) { return r.calls == 0 && r.spent.seconds == 0; });
   std::sort(rows.begin(), rows.end(), [](const TimeRow& a, const TimeRow& b) {
-    return a.seconds != b.seconds ? a.seconds > b.seconds : a.name < b.name;
+    return a.spent.seconds != b.spent.seconds ? a.spent.seconds > b.spent.seconds : a.name < b.name;
   });
-  double sum = 0;
-  for (const TimeRow& r : rows) sum += r.seconds;
   // The rest may be negative when rows were measured twice; it is shown as it is.
-  rows.push_back({"rest", 1, wall_s - sum, 0});
-  for (TimeRow& r : rows) r.share = wall_s > 0 ? r.seconds / wall_s : 0;
+  Spent rest = whole;
+  for (const TimeRow& r : rows) {
+    rest.seconds -= r.spent.seconds;
+    rest.processor -= r.spent.processor;
+  }
+  rows.push_back({"rest", 1, rest});
+  for (TimeRow& r : rows) {
+    r.share = whole.seconds > 0 ? r.spent.seconds / whole.seconds : 0;
+    r.busy = busy_share(r.spent, threads);
+  }
   return rows;
 }
 
-std::string render_time_table(const std::vector<TimeRow>& rows) {
+std::string render_time_table(const std::vector<TimeRow>& rows, int threads) {
   std::size_t width = 6;
   for (const TimeRow& r : rows) width = std::max(width, r.name.size());
-  std::string out = fmt::format("  {:<{}}  {:>10}  {:>10}  {:>7}\n", "effect", width, "calls",
-                                "seconds", "share");
+  std::string out = fmt::format("  {:<{}}  {:>10}  {:>10}  {:>7}  {:>7}\n", "effect", width,
+                                "calls", "seconds", "share", "busy");
+  const auto line = [&](const TimeRow& r, const std::string& calls) {
+    return fmt::format("  {:<{}}  {:>10}  {:>10.3f}  {:>5.1f} %  {:>5.1f} %", r.name, width, calls,
+                       r.spent.seconds, 100 * r.share, 100 * r.busy);
+  };
   TimeRow total{"total"};
   for (const TimeRow& r : rows) {
-    const std::string calls = r.name == "rest" ? "" : std::to_string(r.calls);
-    out += fmt::format("  {:<{}}  {:>10}  {:>10.3f}  {:>5.1f} %", r.name, width, calls, r.seconds,
-                       100 * r.share);
+    out += line(r, r.name == "rest" ? "" : std::to_string(r.calls));
     // The particles that an effect skips are part of its cost.
     if (!r.walked_set.empty())
       out += fmt::format("  {:.3g} % of {}", 100 * r.walked_share, r.walked_set);
     out += '\n';
-    total.seconds += r.seconds;
+    total.spent.seconds += r.spent.seconds;
+    total.spent.processor += r.spent.processor;
     total.share += r.share;
   }
-  out += fmt::format("  {:<{}}  {:>10}  {:>10.3f}  {:>5.1f} %\n", total.name, width, "",
-                     total.seconds, 100 * total.share);
-  return out;
+  total.busy = busy_share(total.spent, threads);
+  return out + line(total, "") + '\n';
 }
 
 }  // namespace sphgeo

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -183,12 +182,12 @@ void Plan<Dim>::order() {
 
 template <int Dim>
 void Plan<Dim>::run(Stage stage) {
-  using clock = std::chrono::steady_clock;
   for (auto& e : effects_) {
     if (e.info.stage != stage) continue;
-    const auto start = clock::now();
-    e.effect->apply(world_);
-    e.seconds += std::chrono::duration<double>(clock::now() - start).count();
+    {
+      const Stopwatch watch(e.spent);
+      e.effect->apply(world_);
+    }
     ++e.calls;
     if (e.walked_list == nullptr) continue;
     e.walked += static_cast<double>(e.walked_list->active());
@@ -221,7 +220,8 @@ template <int Dim>
 void Plan<Dim>::save(StateSink& sink) const {
   for (const auto& e : effects_) {
     sink.put_count("effects/" + e.label + "/calls", e.calls);
-    sink.put_number("effects/" + e.label + "/seconds", e.seconds);
+    sink.put_number("effects/" + e.label + "/seconds", e.spent.seconds);
+    sink.put_number("effects/" + e.label + "/processor_seconds", e.spent.processor);
     e.effect->save(sink, "effects/" + e.label + "/state/");
     if (e.walked_list == nullptr) continue;
     sink.put_number("effects/" + e.label + "/walked", e.walked);
@@ -236,7 +236,8 @@ void Plan<Dim>::load(const StateSource& source) {
     // An observer may be new: what is asked of a run may change when it goes on.
     if (!source.has("effects/" + e.label + "/calls")) continue;
     e.calls = source.count("effects/" + e.label + "/calls");
-    e.seconds = source.number("effects/" + e.label + "/seconds");
+    e.spent = {source.number("effects/" + e.label + "/seconds"),
+               source.number("effects/" + e.label + "/processor_seconds")};
     if (!source.has("effects/" + e.label + "/walked")) continue;
     e.walked = source.number("effects/" + e.label + "/walked");
     e.in_set = source.number("effects/" + e.label + "/in_set");

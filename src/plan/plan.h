@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/stopwatch.h"
 #include "effects/effect.h"
 
 namespace sphgeo {
@@ -27,7 +28,7 @@ struct PlannedEffect {
   std::string label;  ///< the name, with what it acts on where several bear it: for time tables and
                       ///< checkpoints
   long calls = 0;
-  double seconds = 0;
+  Spent spent = {};
   /// Where all its pairs are between two sets: the first of its lists, and the particles that it
   /// has met in all calls. Only these are walked; the others of the set are far from the source.
   std::string walked_set = {};

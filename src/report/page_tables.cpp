@@ -150,7 +150,8 @@ std::string time_html(Runs runs) {
   std::string head = run_heads(runs, 1, 2) + "<tr>" + head_cell("effect");
   for (std::size_t k = 0; k < runs.size(); ++k)
     head += (several ? "" : head_cell("calls", "n")) +
-            head_cell("seconds", several ? "n run" : "n") + head_cell("share", "n");
+            head_cell("seconds", several ? "n run" : "n") + head_cell("share", "n") +
+            (several ? "" : head_cell("busy", "n"));
   head += several ? "</tr>" : "<th></th></tr>";
   std::string rows;
   for (const std::string& name : names) {
@@ -167,6 +168,9 @@ std::string time_html(Runs runs) {
       rows += cell(seconds ? number_text(*seconds, 3) : "–", several ? "n run" : "n",
                    seconds ? path + "/seconds" : "", k);
       rows += cell(share ? fmt::format("{:.1f}\u00a0%", 100 * *share) : "–", "n");
+      if (const auto busy = value("busy"); !several)
+        rows += cell(busy ? fmt::format("{:.1f}\u00a0%", 100 * *busy) : "–", "n",
+                     busy ? path + "/busy" : "", k);
       if (!several)
         rows += cell(fmt::format("<span class=\"bar\" style=\"width:{:.1f}%\"></span>",
                                  100 * std::clamp(share.value_or(0), 0.0, 1.0)),

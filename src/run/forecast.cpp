@@ -333,13 +333,13 @@ void RunForecast<Dim>::leave(const std::vector<TimeRow>& rows) {
   if (settled_) return;
   if (timer_.steps() == 0) {
     for (const TimeRow& r : rows) {
-      const double each = r.calls > 0 ? r.seconds / static_cast<double>(r.calls) : 0;
+      const double each = r.calls > 0 ? r.spent.seconds / static_cast<double>(r.calls) : 0;
       if (r.name == "probes") costs_.observation += each;
       if (r.name == "frames") costs_.frame = each;
     }
     for (const auto& e : plan_.effects())
       if (e.info.stage == Stage::observe && e.calls > 0)
-        costs_.observation += e.seconds / static_cast<double>(e.calls);
+        costs_.observation += e.spent.seconds / static_cast<double>(e.calls);
   }
   const auto steps = static_cast<double>(timer_.steps());
   settled_ = steps >= 3 && (timer_.seconds() > 1 || steps > 0.1 * basis_->advection_steps());

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "core/error.h"
 #include "core/version.h"
@@ -11,8 +10,9 @@
 namespace sphgeo {
 
 template <int Dim>
-Keeper<Dim>::Keeper(RunParts<Dim> parts, const RunFolder& folder, double wall_before)
-    : parts_(parts), folder_(folder), wall_before_(wall_before) {}
+Keeper<Dim>::Keeper(RunParts<Dim> parts, const RunFolder& folder, const Spent& before,
+                    double processor_start)
+    : parts_(parts), folder_(folder), before_(before), processor_start_(processor_start) {}
 
 template <int Dim>
 void Keeper<Dim>::keep_if_due(double wall_seconds) {
@@ -23,7 +23,16 @@ void Keeper<Dim>::keep_if_due(double wall_seconds) {
 
 template <int Dim>
 void Keeper<Dim>::keep(double wall_seconds) {
-  const auto start = std::chrono::steady_clock::now();
+  const double spent_before = spent_.seconds;
+  write(wall_seconds);
+  last_seconds_ = spent_.seconds - spent_before;
+  ++count_;
+  written_at_ = wall_seconds + last_seconds_;
+}
+
+template <int Dim>
+void Keeper<Dim>::write(double wall_seconds) {
+  const Stopwatch watch(spent_);
   parts_.stepper.guard().check_all();
   const Model& model = parts_.model;
   std::size_t expected = 0;
@@ -35,16 +44,13 @@ void Keeper<Dim>::keep(double wall_seconds) {
   file.put_text("deck/decisive", decisive_yaml(model));
   file.put_text("deck/resolved", resolved_yaml(model));
   file.put_count("dimension", Dim);
-  file.put_number("wall_seconds", wall_before_ + wall_seconds);
+  file.put_number("wall_seconds", before_.seconds + wall_seconds);
+  file.put_number("processor_seconds", processor_so_far());
   parts_.world.save(file);
   parts_.stepper.save(file);
   parts_.plan.save(file);
   parts_.recorder.save(file);
   bytes_ = file.write(folder_.checkpoint(), folder_.previous_checkpoint());
-  last_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  seconds_ += last_seconds_;
-  ++count_;
-  written_at_ = wall_seconds + last_seconds_;
 }
 
 void require_same_deck(const Model& model, const CheckpointReader& checkpoint) {

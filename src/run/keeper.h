@@ -25,26 +25,35 @@ struct RunParts {
 template <int Dim>
 class Keeper {
  public:
-  /// `wall_before` is the wall time of earlier parts of this run, s.
-  Keeper(RunParts<Dim> parts, const RunFolder& folder, double wall_before);
+  /// `before` is what earlier parts of this run took; the processor time of this part is that of
+  /// the process from `processor_start` on, s.
+  Keeper(RunParts<Dim> parts, const RunFolder& folder, const Spent& before, double processor_start);
 
   /// Writes a checkpoint if one is due. `wall_seconds` since this process began.
   void keep_if_due(double wall_seconds);
   /// Writes one now, after the guard has checked the whole state. Throws UnstableError, IoError.
   void keep(double wall_seconds);
 
-  double wall_before() const { return wall_before_; }  ///< s
+  double wall_before() const { return before_.seconds; }  ///< s
+  /// Of this part of the run and those before, s.
+  double processor_so_far() const {
+    return before_.processor + processor_seconds() - processor_start_;
+  }
   double last_seconds() const { return last_seconds_; }
-  double seconds() const { return seconds_; }
+  const Spent& spent() const { return spent_; }
   long count() const { return count_; }
   std::uint64_t bytes() const { return bytes_; }
 
  private:
+  void write(double wall_seconds);
+
   RunParts<Dim> parts_;
   const RunFolder& folder_;
-  double wall_before_;
+  Spent before_;
+  double processor_start_;
   double written_at_ = 0;  ///< wall time of this process, s
-  double last_seconds_ = 0, seconds_ = 0;
+  double last_seconds_ = 0;
+  Spent spent_;
   long count_ = 0;
   std::uint64_t bytes_ = 0;
 };

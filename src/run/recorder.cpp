@@ -108,7 +108,8 @@ void Recorder<Dim>::save(StateSink& sink) {
   sink.put_count("output/frames/count", frame_);
   sink.put_number("output/frames/next", frames_.next());
   sink.put_number("output/frames/last_time", last_frame_time_);
-  const double seconds[] = {seconds_probes_, seconds_frames_};
+  const double seconds[] = {spent_probes_.seconds, spent_probes_.processor, spent_frames_.seconds,
+                            spent_frames_.processor};
   const std::int64_t calls[] = {calls_probes_, calls_frames_};
   sink.put("output/seconds", seconds);
   sink.put("output/calls", calls);
@@ -126,12 +127,12 @@ void Recorder<Dim>::load(const StateSource& source) {
   frame_ = source.count("output/frames/count");
   frames_.set_next(source.number("output/frames/next"));
   last_frame_time_ = source.number("output/frames/last_time");
-  double seconds[2];
+  double seconds[4];
   std::int64_t calls[2];
   source.get("output/seconds", std::span<double>(seconds));
   source.get("output/calls", std::span<std::int64_t>(calls));
-  seconds_probes_ = seconds[0];
-  seconds_frames_ = seconds[1];
+  spent_probes_ = {seconds[0], seconds[1]};
+  spent_frames_ = {seconds[2], seconds[3]};
   calls_probes_ = calls[0];
   calls_frames_ = calls[1];
   for (const auto& [name, totals] : {std::pair{"first", &first_}, std::pair{"latest", &latest_}})
@@ -150,14 +151,15 @@ void Recorder<Dim>::observe(double wall_seconds, bool last) {
   if (!frame && !row && std::none_of(probes_.begin(), probes_.end(), due)) return;
   plan_.run(Stage::observe);
 
-  auto start = std::chrono::steady_clock::now();
-  for (ProbeRun& p : probes_)
-    if (due(p)) sample_probe(p);
-  if (row) {
-    sample_run(wall_seconds);
-    rows_.done(t);
+  {
+    const Stopwatch watch(spent_probes_);
+    for (ProbeRun& p : probes_)
+      if (due(p)) sample_probe(p);
+    if (row) {
+      sample_run(wall_seconds);
+      rows_.done(t);
+    }
   }
-  seconds_probes_ += seconds_since(start);
   ++calls_probes_;
   if (!frame) return;
   write_frame();
@@ -267,14 +269,13 @@ void Recorder<Dim>::sample_run(double wall_seconds) {
 
 template <int Dim>
 void Recorder<Dim>::write_frame() {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch(spent_frames_);
   for (const auto& set : world_.sets())
     if (set->phase() != "wall") write_set(*set);
   if (!model_.boundaries.empty()) write_boundaries();
   ++frame_;
   last_frame_time_ = world_.clock.time;
   ++calls_frames_;
-  seconds_frames_ += seconds_since(start);
 }
 
 template <int Dim>
@@ -315,8 +316,7 @@ const Series* Recorder<Dim>::series(const std::string& probe) const {
 
 template <int Dim>
 std::vector<TimeRow> Recorder<Dim>::time_rows() const {
-  return {{"probes", calls_probes_, seconds_probes_, 0},
-          {"frames", calls_frames_, seconds_frames_, 0}};
+  return {{"probes", calls_probes_, spent_probes_}, {"frames", calls_frames_, spent_frames_}};
 }
 
 template <int Dim>

@@ -101,7 +101,7 @@ class Recorder {
   Index frame_ = 0;
   double last_frame_time_ = -1;  ///< s; -1: no frame yet
   std::optional<Totals> first_, latest_;
-  double seconds_probes_ = 0, seconds_frames_ = 0;
+  Spent spent_probes_, spent_frames_;
   long calls_probes_ = 0, calls_frames_ = 0;
 };
 

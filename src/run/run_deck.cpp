@@ -65,10 +65,10 @@ class DeckRun {
       plan.load(*resumed);
     }
     Stepper<Dim> stepper(world, plan);
-    double wall_before = 0;
+    Spent before;
     if (resumed) {
       stepper.load(*resumed);
-      wall_before = resumed->number("wall_seconds");
+      before = {resumed->number("wall_seconds"), resumed->number("processor_seconds")};
       observer_.resumes(world.clock.time, world.clock.advection_steps, checkpoint.path);
     }
     write_file_atomically(folder.resolved_deck(), resolved_yaml(model_));
@@ -76,7 +76,7 @@ class DeckRun {
     checkpoint.reader.reset();  // its memory is needed for the neighbor lists
     set_threads(sensible_threads(moving_particles(world), settings_.threads));
     const RunParts<Dim> parts{model_, world, plan, stepper, recorder};
-    Keeper<Dim> keeper(parts, folder, wall_before);
+    Keeper<Dim> keeper(parts, folder, before, processor_start_);
     RunForecast<Dim> forecast(model_, world, plan, stepper, scene.sound, wishes, base);
 
     const std::optional<UnstableError> failure = step(parts, keeper, forecast);
@@ -84,7 +84,7 @@ class DeckRun {
     RunResult result{std::move(lock), folder, {}, {}};
     Summary& summary = result.summary;
     summary.forecast = forecast.result();
-    summary.wall_s = wall_before + wall();
+    summary.wall_s = before.seconds + wall();
     summarize(model_, parts, keeper, settings_.verify, {failure, stopped_}, summary);
     summary.deck = settings_.deck;
     summary.disk_bytes = folder_bytes(settings_.folder);
@@ -163,6 +163,7 @@ class DeckRun {
 
   const Model& model_;
   const RunSettings& settings_;
+  double processor_start_ = processor_seconds();  // of the process, s
   RunObserver& observer_;
   std::string stopped_;  ///< why the run ends early
 };

@@ -14,18 +14,20 @@ template <int Dim>
 double add_times(const RunParts<Dim>& parts, const Keeper<Dim>& keeper, Summary& summary) {
   const Stepper<Dim>& stepper = parts.stepper;
   std::vector<TimeRow> rows = parts.recorder.time_rows();
-  double stepping = stepper.seconds_rearranging();
-  rows.push_back({"neighbor_lists", stepper.rearrangements(), stepping, 0});
-  rows.push_back({"guard", stepper.guard().calls(), stepper.guard().seconds(), 0});
-  rows.push_back({"checkpoints", keeper.count(), keeper.seconds(), 0});
+  double stepping = stepper.rearranging().seconds;
+  rows.push_back({"neighbor_lists", stepper.rearrangements(), stepper.rearranging()});
+  rows.push_back({"guard", stepper.guard().calls(), stepper.guard().spent()});
+  rows.push_back({"checkpoints", keeper.count(), keeper.spent()});
   for (const auto& e : parts.plan.effects()) {
     rows.push_back(
-        {e.label, e.calls, e.seconds, 0, e.walked_set, e.in_set > 0 ? e.walked / e.in_set : 0});
+        {e.label, e.calls, e.spent, e.walked_set, e.in_set > 0 ? e.walked / e.in_set : 0});
     summary.plan.push_back(
         {stage_name(e.info.stage), e.info.name, e.info.equations, e.effect->acts_on(), e.because});
-    if (e.info.stage != Stage::observe) stepping += e.seconds;
+    if (e.info.stage != Stage::observe) stepping += e.spent.seconds;
   }
-  summary.effects = with_rest(std::move(rows), summary.wall_s);
+  const Spent whole{summary.wall_s, keeper.processor_so_far()};
+  summary.busy = busy_share(whole, summary.threads);
+  summary.effects = with_rest(std::move(rows), whole, summary.threads);
   return stepping;
 }
 
@@ -74,7 +76,7 @@ void summarize(const Model& model, const RunParts<Dim>& parts, const Keeper<Dim>
   summary.particle_updates_per_s_per_core =
       stepping > 0 ? parts.stepper.particle_updates() / stepping / threads() : 0;
   summary.ledger = parts.recorder.ledger();
-  summary.checkpoint = {keeper.count(), keeper.seconds(), keeper.bytes()};
+  summary.checkpoint = {keeper.count(), keeper.spent().seconds, keeper.bytes()};
   summary.guard.extremes = parts.stepper.guard().extremes();
   if (end.failure) add_failure(*end.failure, summary.guard);
 }

@@ -1,8 +1,10 @@
 #include "run/set_frame.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
+#include "core/parallel.h"
 #include "run/boundary_mesh.h"
 
 namespace sphgeo {
@@ -32,12 +34,12 @@ void write_set_frame(const std::string& path, const ParticleSet<Dim>& set,
                          std::span<const double>(set.tensor(spec).data()->data(), 6 * n)});
     else if (spec.type == FieldType::vector) {
       auto& flat = vectors.emplace_back();
-      flat.reserve(3 * n);
+      flat.resize(3 * n);
       const auto& values = set.vector(spec);
-      for (Index i = 0; i < set.size(); ++i) {
+      parallel_for(set.size(), [&](Index i) {
         const Vec3 v = to_space<Dim>(values[i]);
-        flat.insert(flat.end(), v.data(), v.data() + 3);
-      }
+        std::copy_n(v.data(), 3, flat.data() + 3 * i);
+      });
       columns.push_back({name, spec.unit.symbol, 3, std::span<const double>(flat)});
     }
   }

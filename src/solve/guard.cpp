@@ -3,29 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <span>
 
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 
 namespace sphgeo {
 namespace {
-
-/// Adds the time that its scope takes.
-class Stopwatch {
- public:
-  explicit Stopwatch(double& seconds) : seconds_(seconds) {}
-  ~Stopwatch() {
-    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& seconds_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 constexpr int turns_between_slow_checks = 16;
 // A step this much shorter than the longest one so far: the run would never end.
@@ -127,7 +112,7 @@ void Guard<Dim>::check_speed(const StepLimits& limits) {
 
 template <int Dim>
 void Guard<Dim>::after_advection() {
-  const Stopwatch watch(seconds_);
+  const Stopwatch watch(spent_);
   ++calls_;
   const bool slow = calls_ % turns_between_slow_checks == 1;
   check_fields(slow);
@@ -138,7 +123,7 @@ void Guard<Dim>::after_advection() {
 
 template <int Dim>
 void Guard<Dim>::check_all() {
-  const Stopwatch watch(seconds_);
+  const Stopwatch watch(spent_);
   check_speed(plan_.limits());
   check_fields(true);
   check_bounds(
@@ -328,7 +313,8 @@ void Guard<Dim>::save(StateSink& sink) const {
   std::vector<double> flat;
   for (const auto& [low, high] : seen_) flat.insert(flat.end(), {low, high});
   sink.put("guard/seen", flat);
-  sink.put_number("guard/seconds", seconds_);
+  sink.put_number("guard/seconds", spent_.seconds);
+  sink.put_number("guard/processor_seconds", spent_.processor);
   sink.put_count("guard/calls", calls_);
 }
 
@@ -344,7 +330,7 @@ void Guard<Dim>::load(const StateSource& source) {
   std::vector<double> flat(2 * seen_.size());
   source.get("guard/seen", std::span<double>(flat));
   for (std::size_t k = 0; k < seen_.size(); ++k) seen_[k] = {flat[2 * k], flat[2 * k + 1]};
-  seconds_ = source.number("guard/seconds");
+  spent_ = {source.number("guard/seconds"), source.number("guard/processor_seconds")};
   calls_ = source.count("guard/calls");
 }
 

@@ -33,7 +33,8 @@ class Guard {
 
   /// Largest Mach number, smallest and largest density ratio ..., for the summary.
   std::vector<std::pair<std::string, double>> extremes() const;
-  double seconds() const { return seconds_; }
+  /// What the checks took.
+  const Spent& spent() const { return spent_; }
   long calls() const { return calls_; }
 
   void save(StateSink& sink) const;
@@ -62,7 +63,7 @@ class Guard {
   double largest_solid_ = 0;
   double largest_mach_ = 0;
   std::vector<std::pair<double, double>> seen_;  ///< smallest and largest value of each bound
-  double seconds_ = 0;
+  Spent spent_;
   long calls_ = 0;
 };
 

@@ -107,9 +107,9 @@ StepCounts expected_steps(World<Dim>& world, const Plan<Dim>& plan, double speed
 
 template <int Dim>
 double StepTimer<Dim>::between() const {
-  double s = stepper_.seconds_rearranging();
+  double s = stepper_.rearranging().seconds;
   for (const auto& e : plan_.effects())
-    if (e.info.stage == Stage::reinitialize) s += e.seconds;
+    if (e.info.stage == Stage::reinitialize) s += e.spent.seconds;
   return s;
 }
 

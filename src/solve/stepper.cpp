@@ -1,7 +1,6 @@
 #include "solve/stepper.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -25,10 +24,10 @@ bool Stepper<Dim>::run(double end, const RunHooks& hooks) {
 template <int Dim>
 void Stepper<Dim>::rearrange() {
   plan_.run(Stage::exchange);
-  const auto start = std::chrono::steady_clock::now();
-  world_.rearrange();
-  seconds_rearranging_ +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  {
+    const Stopwatch watch(rearranging_);
+    world_.rearrange();
+  }
   ++rearrangements_;
   plan_.run(Stage::reinitialize);  // lines 11, 12
 }
@@ -96,7 +95,8 @@ void Stepper<Dim>::solid_steps(double dt, double limit) {
 
 template <int Dim>
 void Stepper<Dim>::save(StateSink& sink) const {
-  sink.put_number("stepper/seconds_rearranging", seconds_rearranging_);
+  sink.put_number("stepper/seconds_rearranging", rearranging_.seconds);
+  sink.put_number("stepper/processor_seconds_rearranging", rearranging_.processor);
   sink.put_number("stepper/particle_updates", particle_updates_);
   sink.put_count("stepper/rearrangements", rearrangements_);
   guard_.save(sink);
@@ -109,7 +109,8 @@ void Stepper<Dim>::save(StateSink& sink) const {
 
 template <int Dim>
 void Stepper<Dim>::load(const StateSource& source) {
-  seconds_rearranging_ = source.number("stepper/seconds_rearranging");
+  rearranging_ = {source.number("stepper/seconds_rearranging"),
+                  source.number("stepper/processor_seconds_rearranging")};
   particle_updates_ = source.number("stepper/particle_updates");
   rearrangements_ = source.count("stepper/rearrangements");
   guard_.load(source);

@@ -39,7 +39,8 @@ class Stepper {
   void save(StateSink& sink) const;
   void load(const StateSource& source);
 
-  double seconds_rearranging() const { return seconds_rearranging_; }
+  /// What the rearrangements took.
+  const Spent& rearranging() const { return rearranging_; }
   long rearrangements() const { return rearrangements_; }
   /// Particles times acoustic steps since t = 0: the unit of work of the speed figures.
   double particle_updates() const { return particle_updates_; }
@@ -56,7 +57,7 @@ class Stepper {
   Guard<Dim> guard_;
   double start_ = 0, left_ = 0;  ///< of the advection step: its start, and the remaining time,
                                  ///< s; 0 between two steps
-  double seconds_rearranging_ = 0;
+  Spent rearranging_;
   double particle_updates_ = 0;
   long rearrangements_ = 0;
 };

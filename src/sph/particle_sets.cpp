@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/error.h"
+#include "core/indices_where.h"
 #include "core/parallel.h"
 
 namespace sphgeo {
@@ -56,8 +57,7 @@ void ParticleSets<Dim>::remove_lost(ParticleSet<Dim>& set, OutsideDomain policy,
   };
   const double count = ordered_sum(set.size(), [&](Index i) { return outside(i) ? 1.0 : 0.0; });
   if (count == 0) return;
-  for (Index i = 0; i < set.size(); ++i) {
-    if (!outside(i)) continue;
+  for (const std::uint32_t i : indices_where(set.size(), outside)) {
     const bool lost = x[i].allFinite();  // what has no place at all has not left: it is broken
     if (lost && policy != OutsideDomain::stop && set.phase() != "solid") continue;
     const Vec3 at = to_space<Dim>(x[i]);
@@ -73,10 +73,8 @@ void ParticleSets<Dim>::remove_lost(ParticleSet<Dim>& set, OutsideDomain policy,
                            set.ids()[i], set.name(), time),
         {lost ? "lost" : "not_finite", "", set.name(), set.ids()[i], at, time});
   }
-  std::vector<std::uint32_t> keep;
-  keep.reserve(static_cast<std::size_t>(set.size()));
-  for (Index i = 0; i < set.size(); ++i)
-    if (!outside(i)) keep.push_back(static_cast<std::uint32_t>(i));
+  const std::vector<std::uint32_t> keep =
+      indices_where(set.size(), [&](Index i) { return !outside(i); });
   lost_[set.name()] += set.size() - static_cast<Index>(keep.size());
   set.permute(keep);
 }

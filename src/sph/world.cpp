@@ -140,7 +140,9 @@ void World<Dim>::save_arrangement(StateSink& sink) const {
       const auto n = static_cast<std::size_t>(s->size());
       std::vector<typename std::decay_t<decltype(r)>::Stored> stored(n);
       for (int d = 0; d < Dim; ++d) {
-        for (std::size_t i = 0; i < n; ++i) stored[i] = r.stored_position(static_cast<Index>(i), d);
+        parallel_for(s->size(), [&](Index i) {
+          stored[static_cast<std::size_t>(i)] = r.stored_position(i, d);
+        });
         sink.put(packed_path(s->name(), d), stored);
       }
     };
@@ -176,8 +178,9 @@ void World<Dim>::load_packed(const StateSource& source, const std::string& set) 
     std::vector<typename std::decay_t<decltype(r)>::Stored> stored(n);
     for (int d = 0; d < Dim; ++d) {
       source.get(packed_path(set, d), std::span(stored));
-      for (std::size_t i = 0; i < n; ++i)
-        r.set_stored_position(static_cast<Index>(i), d, stored[i]);
+      parallel_for(this->set(set).size(), [&](Index i) {
+        r.set_stored_position(i, d, stored[static_cast<std::size_t>(i)]);
+      });
     }
   };
   RecordPair<Dim>& records = records_.at({set, 0});
