@@ -99,13 +99,11 @@ TEST_SUITE("core") {
   TEST_CASE("several threads take part in a loop") {
     const ThreadsAtEnd restore;
     set_threads(3);
-    // Every block waits until three threads have come.
+    // Every block waits until three threads have come, however long a busy machine takes.
     std::atomic<int> here = 0;
     parallel_blocks(3, 1, [&](Index, Index, Index) {
       ++here;
-      const auto start = std::chrono::steady_clock::now();
-      while (here < 3 && std::chrono::steady_clock::now() - start < std::chrono::seconds(20))
-        std::this_thread::yield();
+      while (here < 3) std::this_thread::yield();
     });
     CHECK(here == 3);
   }

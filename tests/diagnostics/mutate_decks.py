@@ -39,7 +39,7 @@ def sampled(items, most):
 
 def check(sphgeo, path):
     """(exit code, stderr without colours) of `sphgeo check`."""
-    done = subprocess.run([sphgeo, "check", str(path)], stdin=subprocess.DEVNULL, timeout=60,
+    done = subprocess.run([sphgeo, "check", str(path)], stdin=subprocess.DEVNULL, timeout=1200,
                           capture_output=True, text=True, env={**os.environ, "NO_COLOR": "1"})
     return done.returncode, done.stderr
 

@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "support"))
-from program import DECK, ROOT, ProgramTest, main  # noqa: E402
+from program import DECK, HANGS, ROOT, ProgramTest, main  # noqa: E402
 
 HEAD = DECK.rsplit("bodies", 1)[0]
 MEMORY = 800 << 20
@@ -27,7 +27,7 @@ def limit():
 
 class Inputs(ProgramTest):
     def call(self, *words, **options):
-        return super().call(*words, preexec_fn=limit, timeout=250, **options)
+        return super().call(*words, preexec_fn=limit, timeout=HANGS, **options)
 
     def refused(self, says, deck, *words):
         """Exit 2 within bounds; stderr holds each of the texts, on few and short lines."""
@@ -190,7 +190,7 @@ class Inputs(ProgramTest):
                 self.assertIn(b"Broken pipe", done.stderr)
             with self.subTest(words=words, stream="closed"):
                 done = subprocess.run(["/bin/sh", "-c", 'exec "$@" >&-', "sh", self.sphgeo, *words], cwd=self.here,
-                                      stderr=subprocess.PIPE, timeout=60)
+                                      stderr=subprocess.PIPE, timeout=HANGS)
                 self.assertEqual(done.returncode, 5, done.stderr)
                 self.assertIn(b"Bad file descriptor", done.stderr)
         # The results are there all the same, and nothing that was meant for the stream is in them.
@@ -207,7 +207,7 @@ class Inputs(ProgramTest):
         os.close(write)
         self.assertEqual(done.returncode, 0)
         done = subprocess.run(["/bin/sh", "-c", 'exec "$@" 0<&- >&- 2>&-', "sh", self.sphgeo, "run", "deck.yaml", "-o", "none"],
-                              cwd=self.here, timeout=60)
+                              cwd=self.here, timeout=HANGS)
         self.assertEqual(done.returncode, 0)
         self.assertTrue((self.here / "none/run.csv").read_text().startswith("# sphgeo"))
 

@@ -127,7 +127,7 @@ def check_page(text, folders, pictures):
 
 def browse(chromium, page, *options):
     return subprocess.run([chromium, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--enable-logging=stderr",
-                           "--window-size=500,900", *options, page.as_uri()], capture_output=True, text=True, timeout=60)
+                           "--window-size=500,900", *options, page.as_uri()], capture_output=True, text=True, timeout=1200)
 
 
 def check_browser(chromium, page, folders, here):

@@ -17,6 +17,10 @@ bodies: [{name: drop, material: water, shape: {type: box, min: [0, 0, 0], max: [
 """
 
 
+# A program that takes longer hangs, s: none takes a hundredth of that on a machine of its own.
+HANGS = 1200
+
+
 class ProgramTest(unittest.TestCase):
     """Each test calls the program in a folder of its own."""
     sphgeo = None
@@ -33,7 +37,7 @@ class ProgramTest(unittest.TestCase):
         return name
 
     def call(self, *words, **options):
-        options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "timeout": 60, "cwd": self.here, **options}
+        options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "timeout": HANGS, "cwd": self.here, **options}
         env = {**os.environ, "NO_COLOR": "1", **options.pop("env", {})}
         return subprocess.run([self.sphgeo, *words], env=env, **options)
 
