@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/indices_where.h"
 #include "effects/solid_phase.h"
 
 namespace sphgeo {
@@ -67,9 +68,9 @@ void RigidBodies<Dim>::find(const World<Dim>& world) {
   const auto& part = set.tag(fields::part);
   const SolidParameters& parts = world.parameters().solids;
   std::vector<std::vector<std::uint32_t>> all(parts.of.size());
-  for (Index i = 0; i < set.size(); ++i)
-    if (!parts[part[i]].elastic)
-      all[static_cast<std::size_t>(part[i])].push_back(static_cast<std::uint32_t>(i));
+  for (const std::uint32_t i :
+       indices_where(set.size(), [&](Index k) { return !parts[part[k]].elastic; }))
+    all[static_cast<std::size_t>(part[i])].push_back(i);
   for (auto& body : all)
     if (!body.empty()) bodies_.push_back(std::move(body));
 }
@@ -114,11 +115,13 @@ void RigidBodies<Dim>::advance(ParticleSet<Dim>& set, const std::vector<std::uin
                               : Mat3::Identity();
   m.inertia = turn * m.inertia * turn.transpose();
   turning = m.turning(Dim);
-  for (const Index i : particles) {
+  // In all threads where there is one body; in that of the body where there are several.
+  parallel_for(static_cast<Index>(particles.size()), [&](Index k) {
+    const Index i = particles[static_cast<std::size_t>(k)];
     const Vec3 d = turn * (to_space<Dim>(x[i]) - m.center);
     x[i] = to_scene<Dim>(m.center + d + time * m.velocity);
     v[i] = to_scene<Dim>(m.velocity + turning.cross(d));
-  }
+  });
 }
 
 }  // namespace sphgeo

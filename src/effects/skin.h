@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/parallel.h"
 #include "effects/solid_phase.h"
 
 namespace sphgeo {
@@ -64,18 +65,19 @@ void SkinMap<Dim>::update(const World<Dim>& world) {
       ParticleSet<Dim>& set = world.set(name);
       sets_.push_back(std::make_unique<SolidFields<Dim>>(set));
       auto& places = place_of_id_.emplace_back(static_cast<std::size_t>(set.size()));
-      for (Index i = 0; i < set.size(); ++i)
+      parallel_for(set.size(), [&](Index i) {
         places[static_cast<std::size_t>(set.ids()[i])] = static_cast<std::uint32_t>(i);
+      });
     }
   const ParticleSet<Dim>& skin = world.set("skin");
   const auto& source = skin.tag(fields::source);
   const auto& number = skin.tag(fields::source_set);
   rows_.resize(static_cast<std::size_t>(skin.size()));
-  for (Index k = 0; k < skin.size(); ++k) {
+  parallel_for(skin.size(), [&](Index k) {
     const auto n = static_cast<std::size_t>(number[k]);
     rows_[static_cast<std::size_t>(k)] = {
         sets_[n].get(), static_cast<Index>(place_of_id_[n][static_cast<std::size_t>(source[k])])};
-  }
+  });
 }
 
 template <int Dim>

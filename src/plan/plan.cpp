@@ -185,7 +185,7 @@ void Plan<Dim>::run(Stage stage) {
   for (auto& e : effects_) {
     if (e.info.stage != stage) continue;
     {
-      const Stopwatch watch(e.spent);
+      const Stopwatch watch(e.spent, e.calls);
       e.effect->apply(world_);
     }
     ++e.calls;
