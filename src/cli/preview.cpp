@@ -60,7 +60,7 @@ std::string write_preview(const Model& model, const World<Dim>& world, const std
     for (const Vec3& p : at) particles.extend(p);
   }
   if (!particles.empty()) particles = particles.grown(model.resolution / 2);
-  const BoundaryMesh walls = boundary_mesh(model, 0);
+  const BoundaryMesh walls = boundary_mesh(model);
   for (const Vec3& p : walls.points) surroundings.extend(p);
   const std::vector<Vec3> probes = probe_places<Dim>(model);
   for (const Vec3& p : probes) surroundings.extend(p);

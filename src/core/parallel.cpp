@@ -32,6 +32,8 @@ int processors() {
   return static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
+thread_local bool alone = false;
+
 // How often a thread looks for work, or for the end of a loop, before it goes to sleep: some ten
 // microseconds. That spans the gaps between two loops of a step, and costs other programs little.
 constexpr int looks = 1000;
@@ -56,7 +58,7 @@ class Workers {
 
   void run(Index blocks, void (*call)(const void*, Index), const void* context) {
     // A loop within a loop runs in the thread at hand.
-    if (count_ == 1 || blocks < 2 || busy_.exchange(true)) {
+    if (alone || count_ == 1 || blocks < 2 || busy_.exchange(true)) {
       Failure failure;
       for (Index b = 0; b < blocks; ++b) try_block(call, context, b, failure);
       failure.rethrow();
@@ -168,6 +170,8 @@ Workers& workers() {
 void set_threads(int n) { workers().set_count(n); }
 
 int threads() { return workers().count(); }
+
+void keep_loops_to_this_thread() { alone = true; }
 
 void detail::run_blocks(Index blocks, void (*call)(const void* context, Index b),
                         const void* context) {

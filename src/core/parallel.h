@@ -21,6 +21,10 @@ void set_threads(int n);
 /// Number of threads that the next loop uses: all processors, unless set_threads says otherwise.
 int threads();
 
+/// From now on all loops of the calling thread run in it alone: for a thread that works beside the
+/// one whose loops all threads share, and would take them from it.
+void keep_loops_to_this_thread();
+
 namespace detail {
 
 /// Calls call(context, b) for all b in [0, blocks), in several threads.

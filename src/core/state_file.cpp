@@ -149,6 +149,10 @@ struct StateFileWriter::Image {
     if (file >= 0) file.close();
     taken.release();
   }
+  void close() {
+    links.close();
+    file.close();
+  }
 
   static Handle create(std::size_t expected, Taken& taken) {
     tame_hdf5();
@@ -200,21 +204,28 @@ void StateFileWriter::put_text(const std::string& name, std::string_view text) {
   image_->put(name, reinterpret_cast<const unsigned char*>(text.data()), text.size(), 1);
 }
 
-std::uint64_t StateFileWriter::write(const std::string& path, const std::string& previous) {
+std::uint64_t StateFileWriter::finish() {
+  if (bytes_ > 0) return bytes_ + trailer_bytes;
   hsize_t bytes = 0;
   if (H5Fflush(image_->file, H5F_SCOPE_GLOBAL) < 0 || H5Fget_filesize(image_->file, &bytes) < 0)
     throw Error(ExitCode::internal, "HDF5 could not finish a file in memory");
-  image_->file.close();
+  image_->close();
+  bytes_ = bytes;
+  return bytes_ + trailer_bytes;
+}
+
+std::uint64_t StateFileWriter::write(const std::string& path, const std::string& previous) {
+  finish();
   const void* data = image_->taken.data;
-  AtomicFile file(path, bytes + trailer_bytes);
+  AtomicFile file(path, bytes_ + trailer_bytes);
   std::string line;
   parallel_blocks(2, 1, [&](Index task, Index, Index) {
-    if (task == 0) file.write(data, bytes);
-    else line = trailer(kind_, data, bytes);
+    if (task == 0) file.write(data, bytes_);
+    else line = trailer(kind_, data, bytes_);
   });
   file.write(line);
   file.commit(previous);
-  return bytes + line.size();
+  return bytes_ + line.size();
 }
 
 struct StateFileReader::Image {

@@ -11,7 +11,7 @@ namespace sphgeo {
 
 /// What a file holds.
 struct StateFileKind {
-  std::string mark;  ///< stands in its last line, with the version of the layout: "checkpoint 3"
+  std::string mark;  ///< stands in its last line, with the version of the layout: "checkpoint 4"
   std::string noun;  ///< in errors: "checkpoint"
 };
 
@@ -30,15 +30,20 @@ class StateFileWriter : public StateSink {
   void put(const std::string& name, std::span<const std::uint64_t> values) override;
   void put_text(const std::string& name, std::string_view text) override;
 
+  /// Ends the collecting, and all use of HDF5, which knows one thread only: what is left is memory,
+  /// which any thread may write and release. Returns the bytes that the file will have.
+  std::uint64_t finish();
   /// Writes the file under a temporary name, flushes it to the disk and renames it; a file that is
-  /// there already is kept as `previous`, unless that is empty. Returns its bytes. To be called
-  /// once, last. Throws IoError; the earlier file is then where it was.
+  /// there already is kept as `previous`, unless that is empty. To be called once, last; it
+  /// finishes what is not finished yet. Returns its bytes. Throws IoError; the earlier file is then
+  /// where it was.
   std::uint64_t write(const std::string& path, const std::string& previous);
 
  private:
   struct Image;
   StateFileKind kind_;
   std::unique_ptr<Image> image_;
+  std::uint64_t bytes_ = 0;  ///< of the HDF5 data, once it is finished
 };
 
 /// Such a file in memory, checked against its length and checksum before HDF5 sees it.

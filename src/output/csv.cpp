@@ -140,8 +140,11 @@ void CsvWriter::flush(bool to_disk) {
     flushed_ += pending_.size();
     pending_.clear();
   }
-  if (to_disk && ::fsync(descriptor_) != 0)
-    throw_io_error(path_, "cannot flush to the disk", errno);
+  if (to_disk) wait_for_disk();
+}
+
+void CsvWriter::wait_for_disk() const {
+  if (::fsync(descriptor_) != 0) throw_io_error(path_, "cannot flush to the disk", errno);
 }
 
 }  // namespace sphgeo

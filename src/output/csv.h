@@ -37,8 +37,10 @@ class CsvWriter {
   /// One value a column. Throws std::invalid_argument when the number of values is wrong.
   void row(std::span<const double> values);
 
-  /// Hands all rows to the system; with `to_disk` also waits for the disk (before a checkpoint).
+  /// Hands all rows to the system; with `to_disk` also waits for the disk.
   void flush(bool to_disk = false);
+  /// Waits until what the system was handed is on the disk; in any thread, while rows are added.
+  void wait_for_disk() const;
 
   /// Bytes of the head and of all rows so far, flushed or not: a checkpoint keeps it after flush().
   std::uint64_t offset() const { return flushed_ + pending_.size(); }

@@ -75,6 +75,10 @@ std::uint64_t Series::flush(bool to_disk) {
   return csv_->offset();
 }
 
+void Series::wait_for_disk() const {
+  if (csv_) csv_->wait_for_disk();
+}
+
 bool Series::has(std::string_view column) const {
   return std::any_of(columns_.begin(), columns_.end(),
                      [&](const Column& c) { return c.name == column; });

@@ -35,6 +35,8 @@ class Series {
   /// Hands the rows to the system; returns the bytes of the file (0 without a file) for a
   /// checkpoint.
   std::uint64_t flush(bool to_disk = false);
+  /// Waits until what flush() has handed over is on the disk; in any thread, while rows are added.
+  void wait_for_disk() const;
 
   const std::string& name() const { return name_; }
   const std::vector<Column>& columns() const { return columns_; }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <stdexcept>
 
@@ -116,13 +117,16 @@ class VtuFile {
     return head(points, cells).size() + offset_ + tail.size();
   }
 
-  void write(const std::string& path, Index points, Index cells) const {
+  FileImage image(Index points, Index cells) const {
     const std::string start = head(points, cells);
-    AtomicFile file(path, start.size() + offset_ + tail.size());
-    file.write(start);
-    for (const VtuArray& a : arrays_) a.write(file);
-    file.write(tail.data(), tail.size());
-    file.commit();
+    FileImage file(start.size() + offset_ + tail.size());
+    unsigned char* to = std::copy(start.begin(), start.end(), file.data());
+    for (const VtuArray& a : arrays_) {
+      a.store(to);
+      to += a.bytes();
+    }
+    std::copy(tail.begin(), tail.end(), to);
+    return file;
   }
 
  private:
@@ -206,9 +210,14 @@ VtuFile mesh_file(const VtuPoints& points, int corners_per_cell, std::span<const
 
 }  // namespace
 
+FileImage vtu_image(const VtuPoints& points, const std::vector<VtuField>& fields,
+                    const VtuOptions& options) {
+  return particles_file(points, fields, options).image(points.count(), points.count());
+}
+
 void write_vtu(const std::string& path, const VtuPoints& points,
                const std::vector<VtuField>& fields, const VtuOptions& options) {
-  particles_file(points, fields, options).write(path, points.count(), points.count());
+  vtu_image(points, fields, options).write(path);
 }
 
 std::uint64_t vtu_bytes(const VtuPoints& points, const std::vector<VtuField>& fields,
@@ -216,11 +225,17 @@ std::uint64_t vtu_bytes(const VtuPoints& points, const std::vector<VtuField>& fi
   return particles_file(points, fields, options).bytes(points.count(), points.count());
 }
 
+FileImage vtu_mesh_image(const VtuPoints& points, int corners_per_cell,
+                         std::span<const Index> corners, const std::vector<VtuField>& point_fields,
+                         const std::vector<VtuField>& cell_fields, const VtuOptions& options) {
+  return mesh_file(points, corners_per_cell, corners, point_fields, cell_fields, options)
+      .image(points.count(), static_cast<Index>(corners.size()) / corners_per_cell);
+}
+
 void write_vtu_mesh(const std::string& path, const VtuPoints& points, int corners_per_cell,
                     std::span<const Index> corners, const std::vector<VtuField>& point_fields,
                     const std::vector<VtuField>& cell_fields, const VtuOptions& options) {
-  mesh_file(points, corners_per_cell, corners, point_fields, cell_fields, options)
-      .write(path, points.count(), static_cast<Index>(corners.size()) / corners_per_cell);
+  vtu_mesh_image(points, corners_per_cell, corners, point_fields, cell_fields, options).write(path);
 }
 
 std::uint64_t vtu_mesh_bytes(const VtuPoints& points, int corners_per_cell,

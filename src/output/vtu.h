@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/file_image.h"
 #include "core/types.h"
 
 namespace sphgeo {
@@ -52,8 +53,13 @@ struct VtuOptions {
   std::optional<double> time;  ///< s; stored as TimeValue
 };
 
-/// Writes one vertex cell per particle: without them ParaView's Threshold returns nothing.
-/// Whole or not at all. Throws IoError; std::invalid_argument when a field has a wrong length.
+/// A file with one vertex cell per particle: without them ParaView's Threshold returns nothing.
+/// Composed by all threads, whatever their number the same bytes. Throws std::invalid_argument when
+/// a field has a wrong length.
+FileImage vtu_image(const VtuPoints& points, const std::vector<VtuField>& fields,
+                    const VtuOptions& options = {});
+
+/// Writes it, whole or not at all. Throws IoError.
 void write_vtu(const std::string& path, const VtuPoints& points,
                const std::vector<VtuField>& fields, const VtuOptions& options = {});
 
@@ -62,8 +68,13 @@ void write_vtu(const std::string& path, const VtuPoints& points,
 std::uint64_t vtu_bytes(const VtuPoints& points, const std::vector<VtuField>& fields,
                         const VtuOptions& options = {});
 
-/// Writes a surface: `corners` holds the point numbers of each cell, 2 (lines) or 3 (triangles) a
-/// cell. Throws as write_vtu does, std::invalid_argument also for a corner that is not a point.
+/// A surface: `corners` holds the point numbers of each cell, 2 (lines) or 3 (triangles) a cell.
+/// Throws as vtu_image does, std::invalid_argument also for a corner that is not a point.
+FileImage vtu_mesh_image(const VtuPoints& points, int corners_per_cell,
+                         std::span<const Index> corners, const std::vector<VtuField>& point_fields,
+                         const std::vector<VtuField>& cell_fields, const VtuOptions& options = {});
+
+/// Writes it, whole or not at all. Throws IoError.
 void write_vtu_mesh(const std::string& path, const VtuPoints& points, int corners_per_cell,
                     std::span<const Index> corners, const std::vector<VtuField>& point_fields,
                     const std::vector<VtuField>& cell_fields, const VtuOptions& options = {});

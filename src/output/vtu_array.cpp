@@ -1,5 +1,6 @@
 #include "output/vtu_array.h"
 
+#include <memory>
 #include <new>
 
 #include "core/parallel.h"
@@ -8,10 +9,14 @@ namespace sphgeo {
 
 namespace {
 
-void write_u64(AtomicFile& file, std::uint64_t value) { file.write(&value, sizeof value); }
+/// Returns the place behind it.
+unsigned char* store_u64(unsigned char* to, std::uint64_t value) {
+  std::memcpy(to, &value, sizeof value);
+  return to + sizeof value;
+}
 
 /// Wraps bytes into a zlib stream of one stored block: readable by any zlib, and as fast as a copy.
-void write_stored_block(AtomicFile& file, const unsigned char* data, std::size_t bytes) {
+void store_block(unsigned char* to, const unsigned char* data, std::size_t bytes) {
   const auto length = static_cast<std::uint16_t>(bytes);
   const auto inverse = static_cast<std::uint16_t>(~length);
   const unsigned char head[7] = {0x78,
@@ -26,9 +31,9 @@ void write_stored_block(AtomicFile& file, const unsigned char* data, std::size_t
   const unsigned char tail[4] = {
       static_cast<unsigned char>(sum >> 24), static_cast<unsigned char>(sum >> 16),
       static_cast<unsigned char>(sum >> 8), static_cast<unsigned char>(sum)};
-  file.write(head, sizeof head);
-  file.write(data, bytes);
-  file.write(tail, sizeof tail);
+  std::memcpy(to, head, sizeof head);
+  std::memcpy(to + sizeof head, data, bytes);
+  std::memcpy(to + sizeof head + bytes, tail, sizeof tail);
 }
 
 }  // namespace
@@ -62,34 +67,47 @@ void VtuArray::deflate_blocks() {
   });
 }
 
-void VtuArray::write_block_sizes(AtomicFile& file) const {
+unsigned char* VtuArray::store_block_sizes(unsigned char* to) const {
   const Index n = blocks();
   const Index last = count_ - std::max<Index>(n - 1, 0) * values_per_block();
-  write_u64(file, static_cast<std::uint64_t>(n));
-  write_u64(file, static_cast<std::uint64_t>(block_bytes));
+  to = store_u64(to, static_cast<std::uint64_t>(n));
+  to = store_u64(to, static_cast<std::uint64_t>(block_bytes));
   // The size of the last block when it is not a full one, else 0.
   const bool partial = n > 0 && last < values_per_block();
-  write_u64(file, partial ? static_cast<std::uint64_t>(last) * value_bytes_ : 0);
+  to = store_u64(to, partial ? static_cast<std::uint64_t>(last) * value_bytes_ : 0);
   for (Index b = 0; b < n; ++b) {
     const std::uint64_t raw = static_cast<std::uint64_t>(values_in(b)) * value_bytes_;
-    write_u64(file, deflated_.empty() ? raw + stored_overhead
-                                      : deflated_[static_cast<std::size_t>(b)].size());
+    to = store_u64(to, deflated_.empty() ? raw + stored_overhead
+                                         : deflated_[static_cast<std::size_t>(b)].size());
   }
+  return to;
 }
 
-void VtuArray::write(AtomicFile& file) const {
-  if (blocked_) write_block_sizes(file);
-  else write_u64(file, static_cast<std::uint64_t>(count_) * value_bytes_);
-  for (const std::string& block : deflated_) file.write(block);
-  if (!deflated_.empty()) return;
-  std::vector<unsigned char> raw(static_cast<std::size_t>(block_bytes));
-  for (Index b = 0; b < blocks(); ++b) {
+void VtuArray::store(unsigned char* to) const {
+  to = blocked_ ? store_block_sizes(to)
+                : store_u64(to, static_cast<std::uint64_t>(count_) * value_bytes_);
+  if (!deflated_.empty()) {
+    std::vector<unsigned char*> at;
+    for (const std::string& block : deflated_) {
+      at.push_back(to);
+      to += block.size();
+    }
+    parallel_blocks(blocks(), 1, [&](Index b, Index, Index) {
+      const std::string& block = deflated_[static_cast<std::size_t>(b)];
+      std::memcpy(at[static_cast<std::size_t>(b)], block.data(), block.size());
+    });
+    return;
+  }
+  const Index stride = block_bytes + (blocked_ ? static_cast<Index>(stored_overhead) : 0);
+  parallel_blocks(blocks(), 1, [&](Index b, Index, Index) {
+    // Not filled in place: there the values are not aligned.
+    const auto raw = std::make_unique_for_overwrite<unsigned char[]>(block_bytes);
     const Index n = values_in(b);
     const std::size_t bytes = static_cast<std::size_t>(n) * value_bytes_;
-    fill_(b * values_per_block(), n, raw.data());
-    if (blocked_) write_stored_block(file, raw.data(), bytes);
-    else file.write(raw.data(), bytes);
-  }
+    fill_(b * values_per_block(), n, raw.get());
+    if (blocked_) store_block(to + b * stride, raw.get(), bytes);
+    else std::memcpy(to + b * stride, raw.get(), bytes);
+  });
 }
 
 }  // namespace sphgeo

@@ -11,13 +11,12 @@
 #include <type_traits>
 #include <vector>
 
-#include "core/atomic_file.h"
 #include "core/types.h"
 
 namespace sphgeo {
 
-/// One array of numbers that knows how many bytes it takes in the file before it is written, so
-/// that the offsets in the XML head are right and nothing large is held in memory.
+/// One array of numbers that knows how many bytes it takes in the file before it is stored, so that
+/// the offsets in the XML head are right, and all threads can fill their parts of the file.
 class VtuArray {
  public:
   /// `fill(first, count, out)` writes the values first .. first+count-1.
@@ -40,7 +39,8 @@ class VtuArray {
   const std::string& head() const { return head_; }
   /// Bytes in the appended section, sizes included.
   std::uint64_t bytes() const;
-  void write(AtomicFile& file) const;
+  /// Writes them to `to`, from all threads.
+  void store(unsigned char* to) const;
 
  private:
   Index blocks() const { return (count_ + values_per_block() - 1) / values_per_block(); }
@@ -49,7 +49,7 @@ class VtuArray {
     return std::min(values_per_block(), count_ - block * values_per_block());
   }
   void deflate_blocks();
-  void write_block_sizes(AtomicFile& file) const;
+  unsigned char* store_block_sizes(unsigned char* to) const;
 
   /// A multiple of all value sizes that fits one stored deflate block (at most 65535 bytes).
   static constexpr Index block_bytes = 65520;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "core/error.h"
 #include "core/version.h"
@@ -17,29 +18,33 @@ Keeper<Dim>::Keeper(RunParts<Dim> parts, const RunFolder& folder, const Spent& b
 template <int Dim>
 void Keeper<Dim>::keep_if_due(double wall_seconds) {
   // Fifty times the duration of the last one: checkpoints never cost more than 2 % of a run.
-  const double interval = std::max(parts_.model.output.checkpoint_every, 50 * last_seconds_);
-  if (wall_seconds - written_at_ >= interval) keep(wall_seconds);
+  const double interval = std::max(parts_.model.output.checkpoint_every, 50 * last_seconds());
+  // While files are still being written it would have to wait for them.
+  if (wall_seconds - kept_at_ >= interval && parts_.recorder.files().idle()) keep(wall_seconds);
 }
 
 template <int Dim>
 void Keeper<Dim>::keep(double wall_seconds) {
   const double spent_before = spent_.seconds;
-  write(wall_seconds);
-  last_seconds_ = spent_.seconds - spent_before;
+  begin(wall_seconds);
+  last_held_up_ = spent_.seconds - spent_before;
   ++count_;
-  written_at_ = wall_seconds + last_seconds_;
+  kept_at_ = wall_seconds + last_held_up_;
 }
 
 template <int Dim>
-void Keeper<Dim>::write(double wall_seconds) {
+void Keeper<Dim>::begin(double wall_seconds) {
   const Stopwatch watch(spent_);
   parts_.stepper.guard().check_all();
+  SideThread& files = parts_.recorder.files();
+  files.wait();  // what it writes takes memory as well
   const Model& model = parts_.model;
   std::size_t expected = 0;
   for (const auto& set : parts_.world.sets())
     for (const auto& [name, field] : set->fields())
       if (field->spec().lifetime != Lifetime::derived) expected += field->value_bytes();
-  CheckpointWriter file(expected);
+  const auto state = std::make_shared<CheckpointWriter>(expected);
+  CheckpointWriter& file = *state;
   file.put_text("version", version());
   file.put_text("deck/decisive", decisive_yaml(model));
   file.put_text("deck/resolved", resolved_yaml(model));
@@ -50,7 +55,15 @@ void Keeper<Dim>::write(double wall_seconds) {
   parts_.stepper.save(file);
   parts_.plan.save(file);
   parts_.recorder.save(file);
-  bytes_ = file.write(folder_.checkpoint(), folder_.previous_checkpoint());
+  bytes_ = file.finish();
+  files.begin([this, state] {
+    const auto start = std::chrono::steady_clock::now();
+    parts_.recorder.wait_for_disk();  // the tables are at least as long as the checkpoint says
+    state->write(folder_.checkpoint(), folder_.previous_checkpoint());
+    const double seconds = seconds_since(start);
+    last_writing_ = seconds;
+    writing_ = writing_ + seconds;
+  });
 }
 
 void require_same_deck(const Model& model, const CheckpointReader& checkpoint) {

@@ -1,6 +1,7 @@
 #pragma once
-// Writes checkpoints during a run, and restores them.
+// Keeps checkpoints during a run, and restores them.
 
+#include <atomic>
 #include <memory>
 #include <string>
 
@@ -21,7 +22,8 @@ struct RunParts {
   Recorder<Dim>& recorder;
 };
 
-/// When to write checkpoints, and their cost.
+/// When to write checkpoints, and their cost. The state is copied while the run waits; the file is
+/// written beside it, in order with the frames.
 template <int Dim>
 class Keeper {
  public:
@@ -29,9 +31,9 @@ class Keeper {
   /// the process from `processor_start` on, s.
   Keeper(RunParts<Dim> parts, const RunFolder& folder, const Spent& before, double processor_start);
 
-  /// Writes a checkpoint if one is due. `wall_seconds` since this process began.
+  /// Begins a checkpoint if one is due. `wall_seconds` since this process began.
   void keep_if_due(double wall_seconds);
-  /// Writes one now, after the guard has checked the whole state. Throws UnstableError, IoError.
+  /// Begins one now, after the guard has checked the whole state. Throws UnstableError, IoError.
   void keep(double wall_seconds);
 
   double wall_before() const { return before_.seconds; }  ///< s
@@ -39,20 +41,26 @@ class Keeper {
   double processor_so_far() const {
     return before_.processor + processor_seconds() - processor_start_;
   }
-  double last_seconds() const { return last_seconds_; }
+  /// From the start of the last one until it was on the disk; what is still being written counts as
+  /// the one before it, s.
+  double last_seconds() const { return last_held_up_ + last_writing_; }
+  /// The same for all of them, s.
+  double seconds() const { return spent_.seconds + writing_; }
+  /// What the run waited for.
   const Spent& spent() const { return spent_; }
   long count() const { return count_; }
   std::uint64_t bytes() const { return bytes_; }
 
  private:
-  void write(double wall_seconds);
+  void begin(double wall_seconds);
 
   RunParts<Dim> parts_;
   const RunFolder& folder_;
   Spent before_;
   double processor_start_;
-  double written_at_ = 0;  ///< wall time of this process, s
-  double last_seconds_ = 0;
+  double kept_at_ = 0;  ///< wall time of this process, s
+  double last_held_up_ = 0;
+  std::atomic<double> last_writing_ = 0, writing_ = 0;  ///< set by the thread that writes
   Spent spent_;
   long count_ = 0;
   std::uint64_t bytes_ = 0;

@@ -11,7 +11,6 @@
 #include "core/stopwatch.h"
 #include "probes/set_sums.h"
 #include "probes/solid_scene.h"
-#include "run/boundary_mesh.h"
 #include "run/set_frame.h"
 #include "run/thread_count.h"
 #include "run/wishes.h"
@@ -90,14 +89,21 @@ Recorder<Dim>::Recorder(const Model& model, World<Dim>& world, Plan<Dim>& plan,
 
 template <int Dim>
 void Recorder<Dim>::flush() {
+  files_.wait();
   run_.flush(true);
   for (ProbeRun& p : probes_) p.series->flush(true);
 }
 
 template <int Dim>
+void Recorder<Dim>::wait_for_disk() const {
+  run_.wait_for_disk();
+  for (const ProbeRun& p : probes_) p.series->wait_for_disk();
+}
+
+template <int Dim>
 void Recorder<Dim>::save(StateSink& sink) {
   const auto put_bytes = [&](const std::string& at, Series& series) {
-    sink.put_count(at + "/bytes", static_cast<std::int64_t>(series.flush(true)));
+    sink.put_count(at + "/bytes", static_cast<std::int64_t>(series.flush()));
   };
   put_bytes("output/run", run_);
   sink.put_number("output/run/next", rows_.next());
@@ -145,6 +151,7 @@ void Recorder<Dim>::load(const StateSource& source) {
 
 template <int Dim>
 void Recorder<Dim>::observe(double wall_seconds, bool last) {
+  files_.check();
   const double t = world_.clock.time;
   const bool frame = last || frames_.due(t), row = last || rows_.due(t);
   const auto due = [&](const ProbeRun& p) { return last || p.schedule.due(t); };
@@ -270,9 +277,14 @@ void Recorder<Dim>::sample_run(double wall_seconds) {
 template <int Dim>
 void Recorder<Dim>::write_frame() {
   const Stopwatch watch(spent_frames_);
+  files_.wait();  // what it writes takes memory as well
+  std::vector<FrameFile> frame;
   for (const auto& set : world_.sets())
-    if (set->phase() != "wall") write_set(*set);
-  if (!model_.boundaries.empty()) write_boundaries();
+    if (set->phase() != "wall") frame.push_back(compose_set(*set));
+  if (!model_.boundaries.empty()) frame.push_back(compose_boundaries());
+  files_.begin([this, frame = std::move(frame)] {
+    for (const FrameFile& file : frame) write(file);
+  });
   ++frame_;
   last_frame_time_ = world_.clock.time;
   ++calls_frames_;
@@ -288,22 +300,36 @@ std::vector<std::string> Recorder<Dim>::frame_fields(const ParticleSet<Dim>& set
 }
 
 template <int Dim>
-void Recorder<Dim>::write_set(const ParticleSet<Dim>& set) {
+typename Recorder<Dim>::FrameFile Recorder<Dim>::compose_set(const ParticleSet<Dim>& set) {
   VtuOptions options;
   options.time = world_.clock.time;
   options.precision =
       model_.output.frames.precision == "float64" ? VtuPrecision::float64 : VtuPrecision::float32;
-  write_set_frame(folder_.frame(set.name(), frame_), set, frame_fields(set), options);
-  pvd_.at(set.name()).add(world_.clock.time, RunFolder::frame_name(set.name(), frame_));
+  return {pvd_.at(set.name()), world_.clock.time, frame_, set.name(),
+          std::make_shared<FileImage>(set_frame(set, frame_fields(set), options))};
 }
 
 template <int Dim>
-void Recorder<Dim>::write_boundaries() {
-  // Walls at rest are written once and listed at every time.
-  const Index number = boundaries_move(model_) ? frame_ : 0;
-  if (number == frame_)
-    write_boundary_frame(folder_.frame("boundaries", number), model_, world_.clock.time);
-  pvd_.at("boundaries").add(world_.clock.time, RunFolder::frame_name("boundaries", number));
+typename Recorder<Dim>::FrameFile Recorder<Dim>::compose_boundaries() {
+  FrameFile file{pvd_.at("boundaries"), world_.clock.time, frame_, "boundaries", nullptr};
+  const auto compose = [&](const BoundaryMesh& mesh) {
+    file.image = std::make_shared<FileImage>(boundary_frame(mesh, model_, file.time));
+  };
+  if (boundaries_move(model_)) {
+    if (!moving_walls_) moving_walls_ = boundary_mesh(model_);
+    compose(*moving_walls_);
+  } else {
+    // Walls at rest are written once and listed at every time.
+    file.number = 0;
+    if (frame_ == 0) compose(boundary_mesh(model_));
+  }
+  return file;
+}
+
+template <int Dim>
+void Recorder<Dim>::write(const FrameFile& file) const {
+  if (file.image) file.image->write(folder_.frame(file.set, file.number));
+  file.collection.add(file.time, RunFolder::frame_name(file.set, file.number));
 }
 
 template <int Dim>

@@ -1,5 +1,6 @@
 #pragma once
-// Output during a run: probe series, frames, run.csv. It does not change the state.
+// Output during a run: probe series, frames, run.csv. It does not change the state. Frames are
+// composed while the run waits, and written beside it.
 
 #include <array>
 #include <map>
@@ -8,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "core/file_image.h"
+#include "core/side_thread.h"
 #include "deck/model.h"
 #include "output/pvd.h"
 #include "output/run_folder.h"
@@ -16,6 +19,7 @@
 #include "plan/plan.h"
 #include "probes/probe.h"
 #include "probes/set_sums.h"
+#include "run/boundary_mesh.h"
 
 namespace sphgeo {
 
@@ -43,15 +47,21 @@ class Recorder {
   Recorder(const Model& model, World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder,
            const StateSource* resume = nullptr);
 
-  /// Flushes all rows to the disk, then saves the length of each file.
+  /// Hands all rows to the system, then saves the length of each file.
   void save(StateSink& sink);
+  /// Waits until these rows are on the disk; in any thread.
+  void wait_for_disk() const;
 
-  /// At a safe point: samples whatever is due; `last` takes a row of everything.
+  /// At a safe point: samples whatever is due; `last` takes a row of everything. Throws IoError,
+  /// also for what was to be written before.
   void observe(double wall_seconds, bool last);
-  /// Flushes all rows to the disk. Throws IoError, so that lost rows are reported.
+  /// Waits until all files are on the disk. Throws IoError, so that what is lost is reported.
   void flush();
-  /// Writes a frame of the present state, independent of the schedule (post-mortem).
+  /// Begins a frame of the present state, independent of the schedule (post-mortem).
   void write_frame();
+  /// Where frames and checkpoints are written, in the order of their times. One at a time, which is
+  /// the memory that it takes.
+  SideThread& files() { return files_; }
 
   const Series* series(const std::string& probe) const;
   const Index& frames_written() const { return frame_; }
@@ -86,8 +96,17 @@ class Recorder {
   Totals totals() const;
   void add_soil_totals(const ParticleSet<Dim>& soil, Totals& sum) const;
   static void add_set_totals(const ParticleSet<Dim>& set, const Energies& e, Totals& sum);
-  void write_set(const ParticleSet<Dim>& set);
-  void write_boundaries();
+  /// One file of a frame; without an image the collection names an earlier one.
+  struct FrameFile {
+    PvdFile& collection;
+    double time;
+    Index number;
+    std::string set;
+    std::shared_ptr<const FileImage> image;
+  };
+  FrameFile compose_set(const ParticleSet<Dim>& set);
+  FrameFile compose_boundaries();
+  void write(const FrameFile& file) const;
   std::vector<std::string> frame_fields(const ParticleSet<Dim>& set) const;
 
   const Model& model_;
@@ -96,13 +115,15 @@ class Recorder {
   RunFolder folder_;
   std::vector<ProbeRun> probes_;
   Schedule frames_, rows_;
-  std::map<std::string, PvdFile> pvd_;
+  std::map<std::string, PvdFile> pvd_;        ///< of the thread that writes, once the run has begun
+  std::optional<BoundaryMesh> moving_walls_;  ///< as the deck places them
   Series run_;
   Index frame_ = 0;
   double last_frame_time_ = -1;  ///< s; -1: no frame yet
   std::optional<Totals> first_, latest_;
   Spent spent_probes_, spent_frames_;
   long calls_probes_ = 0, calls_frames_ = 0;
+  SideThread files_;  ///< last: its tasks use the others
 };
 
 extern template class Recorder<2>;

@@ -23,7 +23,7 @@ double count_of_every(double interval, double duration, double steps) {
   return std::min(std::floor(duration / interval + 1e-9) + 1, steps + 1);
 }
 
-/// Size of a frame of one set, and the memory while it is written.
+/// Size of a frame of one set, and the memory that its composing takes beside it.
 template <int Dim>
 std::pair<double, double> frame_size(const Model& model, const ParticleSet<Dim>& set,
                                      const std::vector<Wish>& wishes) {
@@ -46,7 +46,7 @@ std::pair<double, double> frame_size(const Model& model, const ParticleSet<Dim>&
     columns.push_back(
         {w.field, spec.unit.symbol, components,
          std::span<const double>(any.data(), n * static_cast<std::size_t>(components))});
-    vectors += components == 3 ? 1 : 0;
+    vectors += components == 3 && Dim == 2 ? 1 : 0;
   }
   VtuOptions options;
   options.time = 0;
@@ -61,7 +61,7 @@ std::pair<double, double> frame_size(const Model& model, const ParticleSet<Dim>&
 }  // namespace
 
 double boundaries_bytes(const Model& model) {
-  const BoundaryMesh mesh = boundary_mesh(model, 0);
+  const BoundaryMesh mesh = boundary_mesh(model);
   if (mesh.part.empty()) return 0;
   return static_cast<double>(
       vtu_mesh_bytes(mesh.points, model.dimension, mesh.corners, {},
@@ -83,13 +83,15 @@ RunOutput run_output(const Model& model, const World<Dim>& world, const std::vec
   }
   out.samples_bytes = cell_bytes * cells;
   out.series_bytes = sizeof(double) * cells;
+  double scratch = 0;
   for (const auto& set : world.sets())
     if (set->phase() != "wall") {
       const auto [bytes, buffers] = frame_size(model, *set, wishes);
       out.frame_bytes += bytes;
       out.frame_heads += std::min(bytes, head_bytes);
-      out.buffer_bytes = std::max(out.buffer_bytes, buffers);
+      scratch = std::max(scratch, buffers);
     }
+  out.buffer_bytes = out.frame_bytes + scratch;
   for (const auto& set : world.sets()) out.checkpoint_bytes += saved_bytes(*set);
   out.walls_bytes = boundaries_bytes(model) * (boundaries_move(model) ? out.frames : 1);
   return out;

@@ -18,8 +18,8 @@ struct RunOutput {
   double frame_bytes = 0;       ///< of one frame of all sets but walls
   double frame_heads = 0;       ///< of that, the part independent of the number of particles
   double walls_bytes = 0;       ///< of all frames of the boundaries
-  double buffer_bytes = 0;      ///< memory taken while a frame is written
-  double checkpoint_bytes = 0;  ///< of one checkpoint; while it is written it exists in memory too
+  double buffer_bytes = 0;      ///< memory taken until a frame is written
+  double checkpoint_bytes = 0;  ///< of one checkpoint; until it is written it exists in memory too
 };
 
 /// Of a run of `steps` advection steps. Composes one frame to know its size.

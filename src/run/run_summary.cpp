@@ -76,7 +76,7 @@ void summarize(const Model& model, const RunParts<Dim>& parts, const Keeper<Dim>
   summary.particle_updates_per_s_per_core =
       stepping > 0 ? parts.stepper.particle_updates() / stepping / threads() : 0;
   summary.ledger = parts.recorder.ledger();
-  summary.checkpoint = {keeper.count(), keeper.spent().seconds, keeper.bytes()};
+  summary.checkpoint = {keeper.count(), keeper.seconds(), keeper.bytes()};
   summary.guard.extremes = parts.stepper.guard().extremes();
   if (end.failure) add_failure(*end.failure, summary.guard);
 }

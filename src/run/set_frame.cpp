@@ -5,17 +5,15 @@
 #include <span>
 
 #include "core/parallel.h"
-#include "run/boundary_mesh.h"
 
 namespace sphgeo {
 
 template <int Dim>
-void write_set_frame(const std::string& path, const ParticleSet<Dim>& set,
-                     const std::vector<std::string>& names, const VtuOptions& options) {
+FileImage set_frame(const ParticleSet<Dim>& set, const std::vector<std::string>& names,
+                    const VtuOptions& options) {
   const auto& x = set.vector(fields::position);
   std::vector<VtuField> columns;
-  std::vector<std::vector<double>>
-      vectors;  // three components each, kept until the file is written
+  std::vector<std::vector<double>> vectors;  // of 2D, with three components each
   vectors.reserve(set.fields().size());
   const Id* ids = set.ids().data();
   const auto n = static_cast<std::size_t>(set.size());
@@ -33,6 +31,11 @@ void write_set_frame(const std::string& path, const ParticleSet<Dim>& set,
       columns.push_back({name, spec.unit.symbol, 6,
                          std::span<const double>(set.tensor(spec).data()->data(), 6 * n)});
     else if (spec.type == FieldType::vector) {
+      if constexpr (Dim == 3) {
+        columns.push_back({name, spec.unit.symbol, 3,
+                           std::span<const double>(set.vector(spec).data()->data(), 3 * n)});
+        continue;
+      }
       auto& flat = vectors.emplace_back();
       flat.resize(3 * n);
       const auto& values = set.vector(spec);
@@ -43,21 +46,20 @@ void write_set_frame(const std::string& path, const ParticleSet<Dim>& set,
       columns.push_back({name, spec.unit.symbol, 3, std::span<const double>(flat)});
     }
   }
-  write_vtu(path, VtuPoints(set.size(), [&](Index i) { return to_space<Dim>(x[i]); }), columns,
-            options);
+  return vtu_image(VtuPoints(set.size(), [&](Index i) { return to_space<Dim>(x[i]); }), columns,
+                   options);
 }
 
-void write_boundary_frame(const std::string& path, const Model& model, double time) {
-  const BoundaryMesh mesh = boundary_mesh(model, time);
+FileImage boundary_frame(const BoundaryMesh& mesh, const Model& model, double time) {
   VtuOptions options;
   options.time = time;
-  write_vtu_mesh(path, mesh.points, model.dimension, mesh.corners, {},
-                 {{"part", "", 1, std::span<const std::int32_t>(mesh.part)}}, options);
+  return vtu_mesh_image(points_at(mesh, model, time), model.dimension, mesh.corners, {},
+                        {{"part", "", 1, std::span<const std::int32_t>(mesh.part)}}, options);
 }
 
-template void write_set_frame<2>(const std::string&, const ParticleSet<2>&,
-                                 const std::vector<std::string>&, const VtuOptions&);
-template void write_set_frame<3>(const std::string&, const ParticleSet<3>&,
-                                 const std::vector<std::string>&, const VtuOptions&);
+template FileImage set_frame<2>(const ParticleSet<2>&, const std::vector<std::string>&,
+                                const VtuOptions&);
+template FileImage set_frame<3>(const ParticleSet<3>&, const std::vector<std::string>&,
+                                const VtuOptions&);
 
 }  // namespace sphgeo

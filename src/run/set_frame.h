@@ -1,5 +1,5 @@
 #pragma once
-// One frame: the particles of a set, or the surfaces of the boundaries, as a VTU file.
+// One frame: the particles of a set, or the surfaces of the boundaries, as a VTU file in memory.
 
 #include <string>
 #include <vector>
@@ -7,15 +7,16 @@
 #include "deck/model.h"
 #include "output/vtu.h"
 #include "particles/particle_set.h"
+#include "run/boundary_mesh.h"
 
 namespace sphgeo {
 
-/// Writes ids and the named fields of a set; names without a field are left out. Throws IoError.
+/// Ids and the named fields of a set; names without a field are left out.
 template <int Dim>
-void write_set_frame(const std::string& path, const ParticleSet<Dim>& set,
-                     const std::vector<std::string>& names, const VtuOptions& options);
+FileImage set_frame(const ParticleSet<Dim>& set, const std::vector<std::string>& names,
+                    const VtuOptions& options);
 
-/// Writes the surfaces of all boundaries at a time (s). Throws IoError.
-void write_boundary_frame(const std::string& path, const Model& model, double time);
+/// The surfaces of the boundaries of a model at a time (s).
+FileImage boundary_frame(const BoundaryMesh& mesh, const Model& model, double time);
 
 }  // namespace sphgeo

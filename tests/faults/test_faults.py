@@ -56,7 +56,7 @@ class Faults(unittest.TestCase):
         if log:
             env["SPHGEO_FAULT_LOG"] = str(cls.log)
         return subprocess.run([SPHGEO, "run", "deck.yaml", "-q", "--threads", "1", "-o", str(folder), *words],
-                              cwd=cls.here, env=env, capture_output=True, text=True, timeout=120)
+                              cwd=cls.here, env=env, capture_output=True, text=True, timeout=1200)
 
     def check_whole(self, folder):
         """Every file in the folder is whole, and none is temporary."""
@@ -73,7 +73,7 @@ class Faults(unittest.TestCase):
             elif path.suffix == ".json":
                 json.loads(data)
             elif path.suffix == ".h5":
-                mark = b"\nsphgeo checkpoint 3 "
+                mark = b"\nsphgeo checkpoint 4 "
                 self.assertTrue(data[-72:].startswith(mark), name)
                 self.assertEqual(int(data[-72 + len(mark):][:16], 16), len(data) - 72, name)
             elif path.suffix == ".html":
