@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "boundaries/boundary.h"
+#include "core/parallel.h"
 #include "deck/registry.h"
 #include "geometry/fill.h"
 #include "geometry/shapes.h"
@@ -109,8 +110,9 @@ struct Tank final : WallBoundary {
 
   std::vector<WallPoint> points(const Placement& p) const override {
     const Axis ax = axis(0, p), ay = axis(1, p), az = axis(2, p);
-    std::vector<WallPoint> wall;
-    for (std::size_t k = 0; k < az.at.size(); ++k)
+    std::vector<std::vector<WallPoint>> layers(az.at.size());
+    parallel_blocks(static_cast<Index>(layers.size()), 1, [&](Index layer, Index, Index) {
+      const auto k = static_cast<std::size_t>(layer);
       for (std::size_t j = 0; j < ay.at.size(); ++j)
         for (std::size_t i = 0; i < ax.at.size(); ++i) {
           if (!ax.outside[i] && !ay.outside[j] && !az.outside[k]) {
@@ -122,8 +124,11 @@ struct Tank final : WallBoundary {
           const Vec3 x(ax.at[i], ay.at[j], az.at[k]);
           Vec3 inner = x.cwiseMax(min).cwiseMin(max);
           if (p.dimension == 2) inner.y() = 0;
-          wall.push_back({x, normal_at(x, inner, p.dimension)});
+          layers[k].push_back({x, normal_at(x, inner, p.dimension)});
         }
+    });
+    std::vector<WallPoint> wall;
+    for (const auto& layer : layers) wall.insert(wall.end(), layer.begin(), layer.end());
     return wall;
   }
 

@@ -1,4 +1,5 @@
 #include "boundaries/boundary.h"
+#include "core/parallel.h"
 #include "deck/registry.h"
 #include "geometry/fill.h"
 #include "geometry/normal.h"
@@ -18,11 +19,14 @@ struct Wall final : WallBoundary {
   }
 
   std::vector<WallPoint> points(const Placement& p) const override {
-    std::vector<WallPoint> wall;
     // Only as deep as the kernel support: particles farther inside have no neighbors in fluids.
-    for (const Vec3& x :
-         fill_layers(*shape, p.spacing, p.dimension, p.thickness, LayerSide::inside, p.clip))
-      wall.push_back({x, outward_normal(*shape, x, 0.5 * p.spacing, p.dimension)});
+    const std::vector<Vec3> at =
+        fill_layers(*shape, p.spacing, p.dimension, p.thickness, LayerSide::inside, p.clip);
+    std::vector<WallPoint> wall(at.size());
+    parallel_for(static_cast<Index>(at.size()), [&](Index i) {
+      const auto k = static_cast<std::size_t>(i);
+      wall[k] = {at[k], outward_normal(*shape, at[k], 0.5 * p.spacing, p.dimension)};
+    });
     return wall;
   }
   std::shared_ptr<const Shape> solid(const Placement&) const override { return shape; }

@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "core/parallel.h"
+#include "effects/meeting_bodies.h"
 #include "effects/skin.h"
 #include "effects/wall_touch.h"
 #include "sph/cell_grid.h"
@@ -140,32 +143,36 @@ void SolidContact<Dim>::find_reaches(const World<Dim>& world) {
   const ParticleSet<Dim>& skin = world.set("skin");
   bodies_.assign(world.parameters().solids.of.size(), {});
   std::vector<Vec<Dim>> at(static_cast<std::size_t>(skin.size()));
-  double most = 0;
-  for (Index k = 0; k < skin.size(); ++k) {
+  parallel_for(skin.size(), [&](Index k) {
     const auto& [of, i] = map_.at(k);
     at[static_cast<std::size_t>(k)] = of->reference_position[i];
-    bodies_[static_cast<std::size_t>(of->part[i])].reach = 2 * of->smoothing_length;
-    most = std::max(most, 2 * of->smoothing_length);
-  }
+  });
+  double most = 0;
   const auto frame = world.grid("skin").frame();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const SolidPart& p = world.parameters().solids.of[b];
     if (!p.is_solid) continue;
+    bodies_[b].reach = 2 * world.set(p.set).smoothing_length();
+    most = std::max(most, bodies_[b].reach);
     bodies_[b].stiffness = p.contact_stiffness;
     bodies_[b].impedance = p.contact_damping * std::sqrt(p.contact_stiffness * p.density);
     bodies_[b].friction = p.friction;
   }
-  const auto close = [&](std::int32_t body, double r2) {
-    double& g = bodies_[static_cast<std::size_t>(body)].reach;
-    g = std::min(g, std::sqrt(r2) * (1 - 1e-9));
-  };
   CellGrid<Dim> grid;
   grid.build(at, frame, most);
   const auto& part = skin.tag(fields::part);
-  for (Index k = 0; k < skin.size(); ++k)
+  std::vector<double> nearest(at.size(), std::numeric_limits<double>::infinity());
+  parallel_for(skin.size(), [&](Index k) {
+    if (clamped(map_.at(k))) return;
+    double& least = nearest[static_cast<std::size_t>(k)];
     grid.for_each_in_reach(at[static_cast<std::size_t>(k)], most, [&](Index j, double r2) {
-      if (part[j] != part[k] && !clamped(map_.at(k)) && !clamped(map_.at(j))) close(part[k], r2);
+      if (part[j] != part[k] && !clamped(map_.at(j))) least = std::min(least, r2);
     });
+  });
+  for (std::size_t k = 0; k < nearest.size(); ++k) {
+    double& reach = bodies_[static_cast<std::size_t>(part[static_cast<Index>(k)])].reach;
+    reach = std::min(reach, std::sqrt(nearest[k]) * (1 - 1e-9));
+  }
   if (!walls_) return;
   bulk_ = wall_bulk(world);
   touch_ = wall_touches(world, map_, solids_, bulk_);
@@ -194,28 +201,13 @@ void SolidContact<Dim>::find_partners(World<Dim>& world) {
   const auto& part = skin.tag(fields::part);
   // Each body comes 0.2 of its h closer in an advection step; the skin's h is 1.25 of the largest.
   const double radius = 2 * skin.smoothing_length();
-  using Box = Eigen::AlignedBox<double, Dim>;
-  std::vector<Box> box(world.parameters().solids.of.size());
-  for (Index k = 0; k < skin.size(); ++k)
-    box[static_cast<std::size_t>(part[k])].extend(x[static_cast<std::size_t>(k)]);
-  std::vector<Box> meeting(box.size());  // where a body may meet others
-  for (std::size_t a = 0; a < box.size(); ++a)
-    for (std::size_t b = 0; b < box.size(); ++b) {
-      if (a == b && !world.parameters().solids.of[a].self_contact) continue;
-      if (box[a].isEmpty() || box[b].isEmpty()) continue;
-      const Vec<Dim> margin = Vec<Dim>::Constant(radius);
-      const Box common = Box(box[a].min() - margin, box[a].max() + margin)
-                             .intersection(Box(box[b].min() - margin, box[b].max() + margin));
-      if (!common.isEmpty()) meeting[a].extend(common);
-    }
-  near_.clear();
-  std::vector<Vec<Dim>> at;
-  for (Index k = 0; k < skin.size(); ++k)
-    if (meeting[static_cast<std::size_t>(part[k])].contains(x[static_cast<std::size_t>(k)])) {
-      near_.push_back(k);
-      at.push_back(x[static_cast<std::size_t>(k)]);
-    }
+  const auto near = meeting_particles<Dim>(world.parameters().solids, part, x, radius);
+  near_.assign(near.begin(), near.end());
   if (near_.empty()) return;
+  std::vector<Vec<Dim>> at(near.size());
+  parallel_for(static_cast<Index>(near.size()), [&](Index k) {
+    at[static_cast<std::size_t>(k)] = x[near[static_cast<std::size_t>(k)]];
+  });
   CellGrid<Dim> grid;
   grid.build(at, world.grid("skin").frame(), radius);
   list_.template build<Dim>(at, grid, radius, Pairing::within);
@@ -314,7 +306,8 @@ void SolidContact<Dim>::see_walls(World<Dim>& world) {
       WallSums<Dim>& seen = walls_seen_[static_cast<std::size_t>(skin)] = {};
       const SolidParticle<Dim>& p = map_.at(skin);
       if (clamped(p)) continue;
-      const Kernel<Dim>& kernel = touch_[static_cast<std::size_t>(p.of->part[p.i])].kernel;
+      WallTouch<Dim>& touch = touch_[static_cast<std::size_t>(p.of->part[p.i])];
+      const Kernel<Dim>& kernel = touch.kernel;
       for (std::uint32_t e = 0; e < block.count[k]; ++e) {
         const auto w = static_cast<Index>(block.entries[block.begin[k] + e] / 8);
         const Vec<Dim> r = p.of->position[p.i] - y[w];
@@ -329,14 +322,10 @@ void SolidContact<Dim>::see_walls(World<Dim>& world) {
       if (seen.sum <= 0) continue;
       seen.velocity /= seen.sum;
       seen.bulk /= seen.sum;
+      if (seen.sum > touch.at_ease * seen.bulk)
+        std::atomic_ref(touch.touching).fetch_add(1);  // a count depends on no order
     }
   });
-  for (const auto& block : blocks)
-    for (const std::uint32_t skin : block.targets) {
-      const SolidParticle<Dim>& p = map_.at(skin);
-      WallTouch<Dim>& t = touch_[static_cast<std::size_t>(p.of->part[p.i])];
-      if (walls_seen_[skin].sum > t.at_ease * walls_seen_[skin].bulk) ++t.touching;
-    }
 }
 
 template <int Dim>

@@ -63,6 +63,30 @@ double half_space_sum(const Kernel<Dim>& kernel, double distance, double dp) {
   return sum;
 }
 
+/// Two particles, and their squared distance, m2.
+struct ReachedPair {
+  Index i, j;
+  double r2;
+};
+
+/// The pairs nearer than `reach` (m) of places and what the grid holds, in the order of the places.
+/// Found by all threads.
+template <int Dim>
+std::vector<ReachedPair> pairs_in_reach(const Field<Vec<Dim>>& places, const CellGrid<Dim>& grid,
+                                        double reach) {
+  std::vector<std::vector<ReachedPair>> parts(
+      static_cast<std::size_t>((places.size() + block_size - 1) / block_size));
+  parallel_blocks(places.size(), block_size, [&](Index begin, Index end, Index b) {
+    for (Index i = begin; i < end; ++i)
+      grid.for_each_in_reach(places[i], reach, [&](Index j, double r2) {
+        parts[static_cast<std::size_t>(b)].push_back({i, j, r2});
+      });
+  });
+  std::vector<ReachedPair> all;
+  for (const auto& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
 /// How much wall there is around each particle of the walls, by id: the sum of W V, over what a
 /// body sees of it that touches a half-space. A column or a plate of few layers has less, and is
 /// touched where less of it is seen; the value is at most 1.
@@ -88,7 +112,7 @@ std::vector<double> wall_bulk(const World<Dim>& world) {
   const auto& id = walls.ids();
   CellGrid<Dim> grid;
   std::vector<Vec<Dim>> at(static_cast<std::size_t>(walls.size()));
-  for (Index w = 0; w < walls.size(); ++w) at[static_cast<std::size_t>(w)] = y[w];
+  parallel_for(walls.size(), [&](Index w) { at[static_cast<std::size_t>(w)] = y[w]; });
   grid.build(at, world.grid("skin").frame(), kernel.support(),
              {id.data(), static_cast<std::size_t>(id.size())});
   std::vector<double> bulk(static_cast<std::size_t>(walls.size()));
@@ -133,13 +157,13 @@ std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const SkinMap<
   const auto& y = walls.vector(walls.has(fields::reference_position) ? fields::reference_position
                                                                      : fields::position);
   const auto& id = walls.ids();
-  for (Index w = 0; w < walls.size(); ++w)
-    grid.for_each_in_reach(y[w], most, [&](Index k, double r2) {
-      const auto& p = map.at(k);
-      if (p.of->clamp[p.i] >= 0) return;
-      double& gap = touch[static_cast<std::size_t>(p.of->part[p.i])].gap;
-      gap = std::min(gap, std::sqrt(r2));
-    });
+  const std::vector<ReachedPair> pairs = pairs_in_reach<Dim>(y, grid, most);
+  for (const ReachedPair& pair : pairs) {
+    const auto& p = map.at(pair.j);
+    if (p.of->clamp[p.i] >= 0) continue;
+    double& gap = touch[static_cast<std::size_t>(p.of->part[p.i])].gap;
+    gap = std::min(gap, std::sqrt(pair.r2));
+  }
   for (std::size_t b = 0; b < touch.size(); ++b) {
     const SolidPart& p = world.parameters().solids.of[b];
     if (!p.is_solid) continue;
@@ -149,14 +173,13 @@ std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const SkinMap<
   // Rows that start face to face see a little more than the mean over all places: not to be pushed
   // apart, they get that. In a corner of two walls it would be too much for either alone.
   std::vector<double> sums(at.size(), 0), bulks(at.size(), 0);
-  for (Index w = 0; w < walls.size(); ++w)
-    grid.for_each_in_reach(y[w], most, [&](Index k, double r2) {
-      const auto& p = map.at(k);
-      const double share = touch[static_cast<std::size_t>(p.of->part[p.i])].kernel.w(r2) *
-                           std::pow(walls.spacing(), Dim);
-      sums[static_cast<std::size_t>(k)] += share;
-      bulks[static_cast<std::size_t>(k)] += share * bulk[static_cast<std::size_t>(id[w])];
-    });
+  for (const auto& [w, k, r2] : pairs) {
+    const auto& p = map.at(k);
+    const double share = touch[static_cast<std::size_t>(p.of->part[p.i])].kernel.w(r2) *
+                         std::pow(walls.spacing(), Dim);
+    sums[static_cast<std::size_t>(k)] += share;
+    bulks[static_cast<std::size_t>(k)] += share * bulk[static_cast<std::size_t>(id[w])];
+  }
   std::vector<double> most_seen(touch.size(), 0);
   for (Index k = 0; k < skin.size(); ++k) {
     double& seen = most_seen[static_cast<std::size_t>(skin.tag(fields::part)[k])];

@@ -63,20 +63,21 @@ class Contour {
 
   /// Marching tetrahedra: six around a diagonal of each cell, the same in all, so faces match.
   void triangulate() {
-    constexpr int paths[6][2] = {{1, 2}, {2, 1}, {0, 2}, {2, 0}, {0, 1}, {1, 0}};
-    const std::array<Index, 3> step{1, n_[0], n_[0] * n_[1]};
-    for (Index z = 0; z + 1 < n_[2]; ++z)
-      for (Index y = 0; y + 1 < n_[1]; ++y)
-        for (Index x = 0; x + 1 < n_[0]; ++x) {
-          const Index o = (z * n_[1] + y) * n_[0] + x;
-          // The bound excludes most cells, which are far from the surface.
-          if (std::abs(value_[at(o)]) > 1.75 * spacing_) continue;
-          for (int t = 0; t < 6; ++t) {
-            const int last = paths[t][0], middle = paths[t][1], first = 3 - last - middle;
-            const Index a = o + step[at(first)], b = a + step[at(middle)];
-            tetrahedron({o, a, b, b + step[at(last)]});
-          }
-        }
+    // Each layer of cells by itself, from all threads; points are numbered in the order of cells.
+    std::vector<std::vector<Facet>> layers(at(n_[2] - 1));
+    parallel_blocks(n_[2] - 1, 1, [&](Index z, Index, Index) { cut_layer(z, layers[at(z)]); });
+    std::vector<Facet> facets;
+    for (auto& layer : layers) {
+      for (Facet& f : layer) {
+        for (std::size_t k = 0; k < 3; ++k) f.corners[k] = crossing(f.edges[k][0], f.edges[k][1]);
+        facets.push_back(f);
+      }
+      layer = {};
+    }
+    place_points();
+    mesh_.triangles.resize(facets.size());
+    parallel_for(static_cast<Index>(facets.size()),
+                 [&](Index i) { mesh_.triangles[at(i)] = triangle(facets[at(i)]); });
   }
 
   /// Marching squares; the two ambiguous cases are decided by the centre of the square.
@@ -109,11 +110,37 @@ class Contour {
           add_segment(leave[1], enter[follows ? 1 : 0]);
         }
       }
+    place_points();
   }
 
   SurfaceMesh take() { return std::move(mesh_); }
 
  private:
+  using Edge = std::array<Index, 2>;  ///< its nodes
+  /// A triangle by the edges that its corners lie on.
+  struct Facet {
+    std::array<Edge, 3> edges;  ///< in the order in which the points on them are numbered
+    Vec3 outward;
+    std::array<std::int32_t, 3> corners;
+    bool backwards;  ///< whether the triangle has them in the opposite order
+  };
+
+  void cut_layer(Index z, std::vector<Facet>& facets) const {
+    constexpr int paths[6][2] = {{1, 2}, {2, 1}, {0, 2}, {2, 0}, {0, 1}, {1, 0}};
+    const std::array<Index, 3> step{1, n_[0], n_[0] * n_[1]};
+    for (Index y = 0; y + 1 < n_[1]; ++y)
+      for (Index x = 0; x + 1 < n_[0]; ++x) {
+        const Index o = (z * n_[1] + y) * n_[0] + x;
+        // The bound excludes most cells, which are far from the surface.
+        if (std::abs(value_[at(o)]) > 1.75 * spacing_) continue;
+        for (int t = 0; t < 6; ++t) {
+          const int last = paths[t][0], middle = paths[t][1], first = 3 - last - middle;
+          const Index a = o + step[at(first)], b = a + step[at(middle)];
+          tetrahedron({o, a, b, b + step[at(last)]}, facets);
+        }
+      }
+  }
+
   Vec3 position(Index i) const {
     return origin_ + spacing_ * Vec3(static_cast<double>(i % n_[0]),
                                      static_cast<double>(i / n_[0] % n_[1]),
@@ -121,38 +148,49 @@ class Contour {
   }
   bool inside(Index i) const { return value_[at(i)] < 0.0; }
 
+  /// Number of the surface point on the edge between two nodes.
   std::int32_t crossing(Index a, Index b) {
     if (a > b) std::swap(a, b);
     const auto [it, fresh] =
         seen_.try_emplace(static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint64_t>(b),
-                          static_cast<std::int32_t>(mesh_.points.size()));
-    if (fresh) {
-      // Regula falsi with halving: linear between the nodes is off where the surface is curved.
-      Vec3 p = position(a), q = position(b);
-      double vp = value_[at(a)], vq = value_[at(b)];
-      Vec3 m = p;
-      for (int k = 0; k < 8; ++k) {
-        const double s = k % 3 == 2 ? 0.5 : vp / (vp - vq);
-        m = p + s * (q - p);
-        const double v = shape_.bound(m);
-        if (std::abs(v) < 1e-7 * spacing_) break;
-        ((v < 0.0) == (vp < 0.0) ? p : q) = m;
-        ((v < 0.0) == (vp < 0.0) ? vp : vq) = v;
-      }
-      mesh_.points.push_back(m);
-    }
+                          static_cast<std::int32_t>(edges_.size()));
+    if (fresh) edges_.push_back({a, b});
     return it->second;
+  }
+
+  void place_points() {
+    mesh_.points.resize(edges_.size());
+    parallel_for(static_cast<Index>(edges_.size()),
+                 [&](Index i) { mesh_.points[at(i)] = surface_point(edges_[at(i)]); });
+  }
+
+  // Regula falsi with halving: linear between the nodes is off where the surface is curved.
+  Vec3 surface_point(const Edge& edge) const {
+    Vec3 p = position(edge[0]), q = position(edge[1]);
+    double vp = value_[at(edge[0])], vq = value_[at(edge[1])];
+    Vec3 m = p;
+    for (int k = 0; k < 8; ++k) {
+      const double s = k % 3 == 2 ? 0.5 : vp / (vp - vq);
+      m = p + s * (q - p);
+      const double v = shape_.bound(m);
+      if (std::abs(v) < 1e-7 * spacing_) break;
+      ((v < 0.0) == (vp < 0.0) ? p : q) = m;
+      ((v < 0.0) == (vp < 0.0) ? vp : vq) = v;
+    }
+    return m;
   }
 
   void add_segment(std::int32_t a, std::int32_t b) { mesh_.segments.push_back({a, b}); }
 
-  void add_triangle(std::int32_t a, std::int32_t b, std::int32_t c, const Vec3& outward) {
+  std::array<std::int32_t, 3> triangle(const Facet& f) const {
+    auto [a, b, c] = f.corners;
+    if (f.backwards) std::swap(a, c);
     const Vec3 &p = mesh_.points[at(a)], &q = mesh_.points[at(b)], &r = mesh_.points[at(c)];
-    if ((q - p).cross(r - p).dot(outward) < 0.0) std::swap(b, c);
-    mesh_.triangles.push_back({a, b, c});
+    if ((q - p).cross(r - p).dot(f.outward) < 0.0) std::swap(b, c);
+    return {a, b, c};
   }
 
-  void tetrahedron(const std::array<Index, 4>& corner) {
+  void tetrahedron(const std::array<Index, 4>& corner, std::vector<Facet>& facets) const {
     std::array<Index, 4> in{}, out{};
     int ins = 0, outs = 0;
     for (const Index c : corner) (inside(c) ? in[at(ins++)] : out[at(outs++)]) = c;
@@ -161,15 +199,15 @@ class Contour {
     for (int k = 0; k < outs; ++k) outward += position(out[at(k)]) / outs;
     for (int k = 0; k < ins; ++k) outward -= position(in[at(k)]) / ins;
     if (ins == 2) {
-      const std::int32_t a = crossing(in[0], out[0]), b = crossing(in[0], out[1]),
-                         c = crossing(in[1], out[1]), d = crossing(in[1], out[0]);
-      add_triangle(a, b, c, outward);
-      add_triangle(a, c, d, outward);
+      const Edge a{in[0], out[0]}, b{in[0], out[1]}, c{in[1], out[1]}, d{in[1], out[0]};
+      facets.push_back({{a, b, c}, outward, {}, false});
+      facets.push_back({{a, c, d}, outward, {}, false});
       return;
     }
     const Index tip = ins == 1 ? in[0] : out[0];
     const auto& base = ins == 1 ? out : in;
-    add_triangle(crossing(tip, base[0]), crossing(tip, base[1]), crossing(tip, base[2]), outward);
+    facets.push_back(
+        {{Edge{tip, base[2]}, Edge{tip, base[1]}, Edge{tip, base[0]}}, outward, {}, true});
   }
 
   const Shape& shape_;
@@ -178,6 +216,7 @@ class Contour {
   std::array<Index, 3> n_{};
   std::vector<double> value_;
   std::unordered_map<std::uint64_t, std::int32_t> seen_;
+  std::vector<Edge> edges_;
   SurfaceMesh mesh_;
 };
 

@@ -10,6 +10,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/parallel.h"
 #include "core/text.h"
 
 namespace sphgeo {
@@ -197,11 +198,12 @@ class Arrays {
     const std::string raw =
         compressed_ ? inflated(place, count * sizeof(T)) : plain(place, count * sizeof(T));
     std::vector<double> out(count);
-    for (std::size_t i = 0; i < out.size(); ++i) {
+    parallel_for(static_cast<Index>(count), [&](Index k) {
+      const auto i = static_cast<std::size_t>(k);
       T value;
       std::memcpy(&value, raw.data() + i * sizeof(T), sizeof(T));
       out[i] = static_cast<double>(value);
-    }
+    });
     return out;
   }
 
@@ -237,20 +239,26 @@ class Arrays {
       if (blocks != 0 || bytes != 0) damaged(place, "is not as long as there are points or cells");
     }
     std::string out(bytes, '\0');
-    std::uint64_t from = place.offset + 24 + 8 * blocks, to = 0;
-    for (std::uint64_t b = 0; b < blocks; ++b) {
-      const std::uint64_t packed = size_at(place, place.offset + 24 + 8 * b);
-      if (from > space || packed > space - from) damaged(place, "lies beyond the end of the file");
+    // Where each block begins in the file; the last of them may end beyond it.
+    std::vector<std::uint64_t> from{place.offset + 24 + 8 * blocks};
+    const auto packed = [&](std::uint64_t b) { return size_at(place, place.offset + 24 + 8 * b); };
+    const auto whole = [&](std::uint64_t b) {
+      return from[b] <= space && packed(b) <= space - from[b];
+    };
+    while (from.size() <= blocks && whole(from.size() - 1))
+      from.push_back(from.back() + packed(from.size() - 1));
+    const auto here = std::min<std::uint64_t>(from.size(), blocks);
+    parallel_blocks(static_cast<Index>(here), 1, [&](Index block, Index, Index) {
+      const auto b = static_cast<std::uint64_t>(block);
+      if (!whole(b)) damaged(place, "lies beyond the end of the file");
       const std::uint64_t wanted = b < full ? size : last;
       auto length = static_cast<uLongf>(wanted);
-      const auto* source = reinterpret_cast<const Bytef*>(head_.data().data() + from);
-      if (uncompress(reinterpret_cast<Bytef*>(out.data() + to), &length, source,
-                     static_cast<uLong>(packed)) != Z_OK ||
+      const auto* source = reinterpret_cast<const Bytef*>(head_.data().data() + from[b]);
+      if (uncompress(reinterpret_cast<Bytef*>(out.data() + b * size), &length, source,
+                     static_cast<uLong>(packed(b))) != Z_OK ||
           length != wanted)
         damaged(place, fmt::format("cannot be unpacked (block {} of {})", b + 1, blocks));
-      from += packed;
-      to += wanted;
-    }
+    });
     return out;
   }
 

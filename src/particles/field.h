@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/aligned.h"
 #include "core/state_io.h"
 #include "core/types.h"
 #include "deck/unit.h"
@@ -66,7 +67,7 @@ class Field final : public FieldBase {
   T* data() { return values_.data(); }
   const T* data() const { return values_.data(); }
 
-  void resize(Index n) override { values_.resize(static_cast<std::size_t>(n), zero()); }
+  void resize(Index n) override;
   void permute(std::span<const std::uint32_t> order, FieldBase& spare) override;
   std::size_t bytes() const override { return values_.capacity() * sizeof(T); }
   std::size_t value_bytes() const override { return values_.size() * sizeof(T); }
@@ -79,7 +80,7 @@ class Field final : public FieldBase {
     if constexpr (std::is_arithmetic_v<T>) return T{0};
     else return T::Zero();
   }
-  std::vector<T> values_;
+  AlignedVector<T> values_;
 };
 
 }  // namespace sphgeo

@@ -9,9 +9,16 @@
 namespace sphgeo {
 
 template <class T>
+void Field<T>::resize(Index n) {
+  const Index before = size();
+  values_.resize(static_cast<std::size_t>(n));
+  parallel_for(n - before, [&](Index k) { (*this)[before + k] = zero(); });
+}
+
+template <class T>
 void Field<T>::permute(std::span<const std::uint32_t> order, FieldBase& spare) {
-  std::vector<T>& to = static_cast<Field<T>&>(spare).values_;
-  to.resize(order.size(), zero());
+  AlignedVector<T>& to = static_cast<Field<T>&>(spare).values_;
+  to.resize(order.size());
   parallel_for(static_cast<Index>(order.size()), [&](Index k) {
     to[static_cast<std::size_t>(k)] = values_[order[static_cast<std::size_t>(k)]];
   });

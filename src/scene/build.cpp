@@ -221,21 +221,31 @@ void add_walls(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
     const Index first = set.size();
     set.resize(first + static_cast<Index>(points.size()));
     scene.boundary_particles.emplace_back(wall.name, static_cast<Index>(points.size()));
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      const Index i = first + static_cast<Index>(k);
-      set.ids()[i] = static_cast<Id>(i);
-      set.tag(fields::part)[i] = static_cast<std::int32_t>(b);
+    auto& id = set.ids();
+    auto& part = set.tag(fields::part);
+    auto& position = set.vector(fields::position);
+    auto& normal = set.vector(fields::normal);
+    auto& no_slip = set.scalar(fields::no_slip);
+    auto* corner = set.has(fields::corner) ? &set.scalar(fields::corner) : nullptr;
+    auto* position_at_rest = moves ? &set.vector(fields::reference_position) : nullptr;
+    auto* normal_at_rest = moves ? &set.vector(fields::reference_normal) : nullptr;
+    const std::optional<Motion::Moment> at_start =
+        wall.motion ? std::optional<Motion::Moment>(std::in_place, *wall.motion, 0, 0)
+                    : std::nullopt;
+    parallel_for(static_cast<Index>(points.size()), [&](Index k) {
+      const WallPoint& point = points[static_cast<std::size_t>(k)];
+      const Index i = first + k;
+      id[i] = static_cast<Id>(i);
+      part[i] = static_cast<std::int32_t>(b);
       if (moves) {
-        set.vector(fields::reference_position)[i] = to_scene<Dim>(points[k].position);
-        set.vector(fields::reference_normal)[i] = to_scene<Dim>(points[k].normal);
+        (*position_at_rest)[i] = to_scene<Dim>(point.position);
+        (*normal_at_rest)[i] = to_scene<Dim>(point.normal);
       }
-      set.vector(fields::position)[i] = to_scene<Dim>(
-          wall.motion ? wall.motion->position(points[k].position, 0) : points[k].position);
-      set.vector(fields::normal)[i] = to_scene<Dim>(
-          wall.motion ? wall.motion->direction(points[k].normal, 0) : points[k].normal);
-      if (set.has(fields::corner)) set.scalar(fields::corner)[i] = points[k].corner ? 1.0 : 0.0;
-      set.scalar(fields::no_slip)[i] = wall.slip_kind() == Slip::no_slip ? 1.0 : 0.0;
-    }
+      position[i] = to_scene<Dim>(at_start ? at_start->position(point.position) : point.position);
+      normal[i] = to_scene<Dim>(at_start ? at_start->direction(point.normal) : point.normal);
+      if (corner) (*corner)[i] = point.corner ? 1.0 : 0.0;
+      no_slip[i] = wall.slip_kind() == Slip::no_slip ? 1.0 : 0.0;
+    });
   }
 }
 

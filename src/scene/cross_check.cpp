@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/indices_where.h"
 #include "core/parallel.h"
 #include "core/text.h"
 #include "effects/effect.h"
@@ -72,22 +73,22 @@ void check_in_walls(const Model& model, World<Dim>& world, const ParticleSet<Dim
     Index count = 0, body = -1, wall = -1;
     Vec3 at = Vec3::Zero();
   };
+  const auto* clamp = set.has(fields::clamp) ? &set.tag(fields::clamp) : nullptr;
   // Threshold of the distance, in spacings.
   const auto nearer_than = [&](double spacings) {
-    Clash clash;
-    for (Index i = 0; i < set.size(); ++i) {
-      if (set.has(fields::clamp) && set.tag(fields::clamp)[i] >= 0) continue;
-      bool close = false;
+    const auto wall_near = [&](Index i) {
+      Index wall = -1;
       grid.for_each_in_reach(x[i], spacings * set.spacing(), [&](Index j, double) {
-        if (clash.count == 0 && !close) clash.wall = walls->tag(fields::part)[j];
-        close = true;
+        if (wall < 0) wall = j;
       });
-      if (close && clash.count++ == 0) {
-        clash.body = set.tag(fields::part)[i];
-        clash.at = to_space<Dim>(x[i]);
-      }
-    }
-    return clash;
+      return wall;
+    };
+    const auto close = indices_where(
+        set.size(), [&](Index i) { return !(clamp && (*clamp)[i] >= 0) && wall_near(i) >= 0; });
+    if (close.empty()) return Clash{};
+    const Index first = close.front();
+    return Clash{static_cast<Index>(close.size()), set.tag(fields::part)[first],
+                 walls->tag(fields::part)[wall_near(first)], to_space<Dim>(x[first])};
   };
   const Clash clash = nearer_than(0.45);
   if (clash.count == 0 && set.phase() == "soil") {

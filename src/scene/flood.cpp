@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel.h"
+
 namespace sphgeo {
 namespace {
 
@@ -55,13 +57,14 @@ FloodGrid::FloodGrid(const FloodFrame& frame) : frame_(frame), cell_(0.5 * frame
   sideways_ = {-1, 1};
   if (n_[1] > 1) sideways_.insert(sideways_.end(), {-n_[0], n_[0]});
   state_.assign(static_cast<std::size_t>(layer_) * static_cast<std::size_t>(n_[2]), 0);
-  for (std::size_t c = 0; c < state_.size(); ++c) {
+  parallel_for(static_cast<Index>(state_.size()), [&](Index cell) {
+    const auto c = static_cast<std::size_t>(cell);
     const auto in_layer = static_cast<int>(c % layer_);
     const int i = in_layer % n_[0], j = in_layer / n_[0], k = static_cast<int>(c / layer_);
     if (k == n_[2] - 1) state_[c] = solid;  // no flood rises above the liquid's top
     else if (i == 0 || i == n_[0] - 1 || k == 0 || (n_[1] > 1 && (j == 0 || j == n_[1] - 1)))
       state_[c] = edge;
-  }
+  });
 }
 
 Vec3 FloodGrid::center(Cell c) const {

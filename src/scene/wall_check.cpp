@@ -150,10 +150,12 @@ void check_bodies_held(const Model& model, const World<Dim>& world, Diagnostics&
   Shadow shadow(down, model.resolution, all);
   for (Index i = 0; i < walls->size(); ++i) shadow.add(to_space<Dim>(y[i]));
   std::vector<bool> held(model.bodies.size(), false), seen(held), moving(held);
+  const auto& part = water->tag(fields::part);
+  const auto& v = water->vector(fields::velocity);
   for (Index i = 0; i < water->size(); ++i) {
-    const auto b = static_cast<std::size_t>(water->tag(fields::part)[i]);
+    const auto b = static_cast<std::size_t>(part[i]);
     seen[b] = true;
-    moving[b] = moving[b] || water->vector(fields::velocity)[i].squaredNorm() > 0;
+    moving[b] = moving[b] || v[i].squaredNorm() > 0;
     held[b] = held[b] || shadow.beyond(to_space<Dim>(x[i]), model.gravity[down] > 0);
   }
   for (std::size_t b = 0; b < held.size(); ++b) {

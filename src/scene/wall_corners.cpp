@@ -26,34 +26,46 @@ Vec3 normal_of(const Shape& solid, const Vec3& at, double dp, int dimension) {
   return slope;
 }
 
-/// Points of the surface of these walls that soil can reach: one for each particle of the first
-/// layer, and more at an edge. The normals of particles cannot be used here: where another wall
-/// covers them they have been turned away from their own surface.
+/// Adds the points of a wall's surface nearest to one of its particles that soil can reach: one
+/// for a particle of the first layer, more at an edge, none for the others.
+void add_surface(const std::vector<const WallPart*>& all, const WallPart& wall, const Vec3& p,
+                 double dp, int dimension, std::vector<SurfacePoint>& surface) {
+  if (wall.solid->signed_distance(p) < -dp) return;
+  const std::size_t first = surface.size();
+  const auto look_from = [&](const Vec3& surface_point) {
+    const Vec3 n = normal_of(*wall.solid, surface_point, dp, dimension);
+    if (n.norm() < 0.99) return false;
+    const Vec3 at =
+        p + ((surface_point - p).dot(n) - wall.solid->signed_distance(surface_point)) * n;
+    const bool known =
+        std::any_of(surface.begin() + static_cast<std::ptrdiff_t>(first), surface.end(),
+                    [&](const SurfacePoint& s) { return s.normal.dot(n) > 0.99; });
+    if (!known && !inside_any(all, &wall, at + 0.5 * dp * n, 0))
+      surface.push_back({at, n.normalized()});
+    return true;
+  };
+  if (look_from(p)) return;
+  for (int k = 0; k < 3; k += dimension == 2 ? 2 : 1)
+    for (const double by : {-0.1 * dp, 0.1 * dp}) look_from(p + by * Vec3::Unit(k));
+}
+
+/// Points of the surface of these walls that soil can reach. The normals of particles cannot be
+/// used here: where another wall covers them they have been turned away from their own surface.
 std::vector<SurfacePoint> surface_of(const std::vector<WallPart*>& walls, double dp,
                                      int dimension) {
   const std::vector<const WallPart*> all(walls.begin(), walls.end());
   std::vector<SurfacePoint> surface;
-  for (const WallPart* wall : walls)
-    for (const WallPoint& p : wall->points) {
-      if (wall->solid->signed_distance(p.position) < -dp) continue;
-      const std::size_t first = surface.size();
-      const auto look_from = [&](const Vec3& surface_point) {
-        const Vec3 n = normal_of(*wall->solid, surface_point, dp, dimension);
-        if (n.norm() < 0.99) return false;
-        const Vec3 at =
-            p.position +
-            ((surface_point - p.position).dot(n) - wall->solid->signed_distance(surface_point)) * n;
-        const bool known =
-            std::any_of(surface.begin() + static_cast<std::ptrdiff_t>(first), surface.end(),
-                        [&](const SurfacePoint& s) { return s.normal.dot(n) > 0.99; });
-        if (!known && !inside_any(all, wall, at + 0.5 * dp * n, 0))
-          surface.push_back({at, n.normalized()});
-        return true;
-      };
-      if (look_from(p.position)) continue;
-      for (int k = 0; k < 3; k += dimension == 2 ? 2 : 1)
-        for (const double by : {-0.1 * dp, 0.1 * dp}) look_from(p.position + by * Vec3::Unit(k));
-    }
+  for (const WallPart* wall : walls) {
+    const auto n = static_cast<Index>(wall->points.size());
+    std::vector<std::vector<SurfacePoint>> parts(
+        static_cast<std::size_t>((n + block_size - 1) / block_size));
+    parallel_blocks(n, block_size, [&](Index begin, Index end, Index b) {
+      for (Index k = begin; k < end; ++k)
+        add_surface(all, *wall, wall->points[static_cast<std::size_t>(k)].position, dp, dimension,
+                    parts[static_cast<std::size_t>(b)]);
+    });
+    for (const auto& part : parts) surface.insert(surface.end(), part.begin(), part.end());
+  }
   return surface;
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "geometry/mesh.h"
 #include "read_shape.h"
 
@@ -58,6 +59,18 @@ TEST_SUITE("geometry") {
     const SurfaceMesh m = surface_mesh(s, 0.07, 3);
     CHECK(enclosed_volume({m.points, m.triangles}) ==
           doctest::Approx(4.0 / 3.0 * std::numbers::pi).epsilon(0.01));
+  }
+
+  TEST_CASE("surface mesh: the same with any number of threads") {
+    const ShapePtr s = shape_of("{type: sphere, center: [0, 0, 0], radius: 1}", 3);
+    const int before = threads();
+    set_threads(1);
+    const SurfaceMesh one = surface_mesh(*s, 0.07, 3);
+    set_threads(3);
+    const SurfaceMesh three = surface_mesh(*s, 0.07, 3);
+    set_threads(before);
+    CHECK(three.triangles == one.triangles);
+    CHECK(three.points == one.points);
   }
 
   TEST_CASE("surface mesh: closed outlines with the solid on the left in 2D") {

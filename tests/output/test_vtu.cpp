@@ -8,6 +8,7 @@
 
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/parallel.h"
 #include "output/vtu.h"
 #include "temporary_folder.h"
 
@@ -155,6 +156,18 @@ TEST_SUITE("output") {
     CHECK(static_cast<double>(std::filesystem::file_size(folder / "a.vtu")) <
           0.8 * static_cast<double>(std::filesystem::file_size(folder / "raw.vtu")));
     CHECK(read_file(folder / "a.vtu").find("TimeValue") == std::string::npos);
+  }
+
+  TEST_CASE("a frame is the same bytes with any number of threads") {
+    const test::TemporaryFolder folder;
+    const Cloud cloud(40001);
+    const int before = threads();
+    for (const int n : {1, 2, 3}) {
+      set_threads(n);
+      write_vtu(folder / std::to_string(n), cloud.points, cloud.fields());
+      CHECK(read_file(folder / std::to_string(n)) == read_file(folder / "1"));
+    }
+    set_threads(before);
   }
 
   TEST_CASE("a surface of triangles and one of lines") {

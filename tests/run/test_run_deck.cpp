@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/version.h"
+#include "output/pvd.h"
 #include "output/temporary_folder.h"
 #include "run/relax_deck.h"
 
@@ -205,6 +206,30 @@ TEST_SUITE("run") {
     CHECK(read_file(rest.folder.probe_csv("bottom")) ==
           read_file(at_once.folder.probe_csv("bottom")));
     CHECK(read_file(rest.folder.frame("water", 2)) == read_file(at_once.folder.frame("water", 2)));
+  }
+
+  TEST_CASE("a frame that cannot be written ends the run, and nothing later is written") {
+    // Where the second frame is to be written there is a folder.
+    struct InTheWay final : RunObserver {
+      void begins(const RunFolder& folder) override {
+        fs::create_directory(folder.frame("water", 1) + ".part");
+      }
+    } observer;
+    const OneThread threads_kept;
+    const test::TemporaryFolder here;
+    const Model model = read_deck_text(pool);
+    try {
+      run_deck(model, settings_for(here / "run"), observer);
+      FAIL_CHECK("the run did not notice");
+    } catch (const IoError& e) {
+      CHECK(std::string(e.what()).find("water_000001.vtu") != std::string::npos);
+    }
+    const RunFolder folder(here / "run", ExistingResults::resume);
+    CHECK(fs::exists(folder.frame("water", 0)));
+    CHECK_FALSE(fs::exists(folder.frame("water", 2)));
+    CHECK(PvdFile::read(folder.pvd("water")).frames().size() == 1);
+    CHECK_FALSE(fs::exists(folder.checkpoint()));
+    CHECK_FALSE(fs::exists(folder.summary()));
   }
 
   TEST_CASE("a folder is refused that holds results, or that another run holds") {
