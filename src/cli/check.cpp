@@ -90,10 +90,11 @@ std::optional<Forecast> forecast_of(const Model& model, World<Dim>& world, Plan<
                                     clock_type::time_point start) {
   if (world.sets().empty()) return std::nullopt;
   const double started = std::chrono::duration<double>(clock_type::now() - start).count();
-  const ForecastBasis basis(model, world, plan, sound, wishes, base);
+  const BoundaryMesh walls = boundary_mesh(model);
+  const ForecastBasis basis(model, world, plan, sound, wishes, walls, base);
   std::optional<MeasuredCosts> costs;
   if (options.calibrate && basis.advection_steps() > 0) {
-    costs = measure_costs<Dim>(model, world, plan, wishes, started, basis.advection_steps());
+    costs = measure_costs<Dim>(model, world, plan, wishes, walls, started, basis.advection_steps());
     if (!costs)
       std::cerr
           << "warning: the scene becomes unstable in its first steps; the time is not forecast\n";

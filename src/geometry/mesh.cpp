@@ -66,7 +66,11 @@ class Contour {
     // Each layer of cells by itself, from all threads; points are numbered in the order of cells.
     std::vector<std::vector<Facet>> layers(at(n_[2] - 1));
     parallel_blocks(n_[2] - 1, 1, [&](Index z, Index, Index) { cut_layer(z, layers[at(z)]); });
+    std::size_t count = 0;
+    for (const auto& layer : layers) count += layer.size();
     std::vector<Facet> facets;
+    facets.reserve(count);
+    seen_.reserve(count / 2 + 16);  // a closed surface of triangles has half as many points
     for (auto& layer : layers) {
       for (Facet& f : layer) {
         for (std::size_t k = 0; k < 3; ++k) f.corners[k] = crossing(f.edges[k][0], f.edges[k][1]);

@@ -211,13 +211,13 @@ void refuse_too_large(const Model& model) {
 template <int Dim>
 ForecastBasis::ForecastBasis(const Model& model, World<Dim>& world, const Plan<Dim>& plan,
                              const SoundSpeed& sound, const std::vector<Wish>& wishes,
-                             std::uint64_t base)
+                             const BoundaryMesh& walls, std::uint64_t base)
     : model_(model),
       counts_(counts_of(world)),
       shares_(memory_shares(world, plan)),
       base_(static_cast<double>(base)),
       steps_(expected_steps(world, plan, typical_speed(world, sound), model_.end_time)),
-      output_(run_output(model, world, wishes, steps_.advection)) {}
+      output_(run_output(model, world, wishes, walls, steps_.advection)) {}
 
 RunFigures ForecastBasis::figures(double coarser, const ParticleCounts& at, int with_threads,
                                   const std::optional<MeasuredCosts>& costs) const {
@@ -286,13 +286,13 @@ Forecast ForecastBasis::operator()(const std::optional<MeasuredCosts>& costs) co
 
 template <int Dim>
 std::optional<MeasuredCosts> measure_costs(const Model& model, World<Dim>& world, Plan<Dim>& plan,
-                                           const std::vector<Wish>& wishes, double start,
-                                           double steps) {
+                                           const std::vector<Wish>& wishes,
+                                           const BoundaryMesh& walls, double start, double steps) {
   const double particles = fluid(counts_of(world));
   if (particles > calibrated_particles) {
     CoarseCopy<Dim> copy(model, calibrated_particles / 2);
-    auto costs =
-        measure_costs<Dim>(*copy.scene.model, *copy.scene.world, *copy.plan, wishes, 0, steps);
+    auto costs = measure_costs<Dim>(*copy.scene.model, *copy.scene.world, *copy.plan, wishes,
+                                    boundary_mesh(*copy.scene.model), 0, steps);
     if (!costs) return costs;
     const double larger = ratio(particles, fluid(counts_of(*copy.scene.world)));
     return MeasuredCosts{start,
@@ -312,7 +312,7 @@ std::optional<MeasuredCosts> measure_costs(const Model& model, World<Dim>& world
     sample_probes(model, world);
     costs.observation = seconds_since(begin);
     begin = clock_type::now();
-    run_output(model, world, wishes, 1e9);
+    run_output(model, world, wishes, walls, 1e9);
     costs.frame = seconds_since(begin);
     return costs;
   } catch (const UnstableError&) {
@@ -324,7 +324,7 @@ template <int Dim>
 void RunForecast<Dim>::arrive(double wall) {
   timer_.end();
   if (basis_) return;
-  basis_.emplace(model_, world_, plan_, sound_, wishes_, base_);
+  basis_.emplace(model_, world_, plan_, sound_, wishes_, walls_, base_);
   costs_.start = wall;
 }
 
@@ -357,13 +357,15 @@ std::optional<Forecast> RunForecast<Dim>::result() const {
 }
 
 template ForecastBasis::ForecastBasis(const Model&, World<2>&, const Plan<2>&, const SoundSpeed&,
-                                      const std::vector<Wish>&, std::uint64_t);
+                                      const std::vector<Wish>&, const BoundaryMesh&, std::uint64_t);
 template ForecastBasis::ForecastBasis(const Model&, World<3>&, const Plan<3>&, const SoundSpeed&,
-                                      const std::vector<Wish>&, std::uint64_t);
+                                      const std::vector<Wish>&, const BoundaryMesh&, std::uint64_t);
 template std::optional<MeasuredCosts> measure_costs<2>(const Model&, World<2>&, Plan<2>&,
-                                                       const std::vector<Wish>&, double, double);
+                                                       const std::vector<Wish>&,
+                                                       const BoundaryMesh&, double, double);
 template std::optional<MeasuredCosts> measure_costs<3>(const Model&, World<3>&, Plan<3>&,
-                                                       const std::vector<Wish>&, double, double);
+                                                       const std::vector<Wish>&,
+                                                       const BoundaryMesh&, double, double);
 template class RunForecast<2>;
 template class RunForecast<3>;
 

@@ -29,7 +29,8 @@ struct MeasuredCosts {
 struct ForecastBasis {
   template <int Dim>
   ForecastBasis(const Model& model, World<Dim>& world, const Plan<Dim>& plan,
-                const SoundSpeed& sound, const std::vector<Wish>& wishes, std::uint64_t base);
+                const SoundSpeed& sound, const std::vector<Wish>& wishes, const BoundaryMesh& walls,
+                std::uint64_t base);
 
   /// The forecast for the threads in use; without the time when no costs are given.
   Forecast operator()(const std::optional<MeasuredCosts>& costs) const;
@@ -52,8 +53,8 @@ struct ForecastBasis {
 /// take too long. None when the scene becomes unstable in these steps.
 template <int Dim>
 std::optional<MeasuredCosts> measure_costs(const Model& model, World<Dim>& world, Plan<Dim>& plan,
-                                           const std::vector<Wish>& wishes, double start,
-                                           double steps);
+                                           const std::vector<Wish>& wishes,
+                                           const BoundaryMesh& walls, double start, double steps);
 
 /// The forecast that a run makes: all but the time before its first step, the time from its own
 /// first steps. It measures at negligible cost and changes nothing.
@@ -63,12 +64,13 @@ class RunForecast {
   /// `base` as in ForecastBasis.
   RunForecast(const Model& model, World<Dim>& world, const Plan<Dim>& plan,
               const Stepper<Dim>& stepper, SoundSpeed sound, std::vector<Wish> wishes,
-              std::uint64_t base)
+              const BoundaryMesh& walls, std::uint64_t base)
       : model_(model),
         world_(world),
         plan_(plan),
         sound_(std::move(sound)),
         wishes_(std::move(wishes)),
+        walls_(walls),
         base_(base),
         timer_(world, plan, stepper) {}
 
@@ -85,6 +87,7 @@ class RunForecast {
   const Plan<Dim>& plan_;
   SoundSpeed sound_;
   std::vector<Wish> wishes_;
+  const BoundaryMesh& walls_;
   std::uint64_t base_;
   StepTimer<Dim> timer_;
   MeasuredCosts costs_;

@@ -58,10 +58,12 @@ void Schedule::done(double time) { next_ = (std::floor(time / interval_ + 1e-9) 
 
 template <int Dim>
 Recorder<Dim>::Recorder(const Model& model, World<Dim>& world, Plan<Dim>& plan,
-                        const RunFolder& folder, const StateSource* resume)
+                        const BoundaryMesh& walls, const RunFolder& folder,
+                        const StateSource* resume)
     : model_(model),
       world_(world),
       plan_(plan),
+      walls_(walls),
       folder_(folder),
       frames_(model.frame_interval()),
       rows_(model.run_interval()),
@@ -312,17 +314,10 @@ typename Recorder<Dim>::FrameFile Recorder<Dim>::compose_set(const ParticleSet<D
 template <int Dim>
 typename Recorder<Dim>::FrameFile Recorder<Dim>::compose_boundaries() {
   FrameFile file{pvd_.at("boundaries"), world_.clock.time, frame_, "boundaries", nullptr};
-  const auto compose = [&](const BoundaryMesh& mesh) {
-    file.image = std::make_shared<FileImage>(boundary_frame(mesh, model_, file.time));
-  };
-  if (boundaries_move(model_)) {
-    if (!moving_walls_) moving_walls_ = boundary_mesh(model_);
-    compose(*moving_walls_);
-  } else {
-    // Walls at rest are written once and listed at every time.
-    file.number = 0;
-    if (frame_ == 0) compose(boundary_mesh(model_));
-  }
+  // Walls at rest are written once and listed at every time.
+  if (!boundaries_move(model_)) file.number = 0;
+  if (file.number == frame_)
+    file.image = std::make_shared<FileImage>(boundary_frame(walls_, model_, file.time));
   return file;
 }
 

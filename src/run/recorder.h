@@ -42,10 +42,10 @@ class Schedule {
 template <int Dim>
 class Recorder {
  public:
-  /// Opens all files; with `resume` it continues existing ones, cut back to the checkpoint. Throws
-  /// IoError.
-  Recorder(const Model& model, World<Dim>& world, Plan<Dim>& plan, const RunFolder& folder,
-           const StateSource* resume = nullptr);
+  /// Opens all files; with `resume` it continues existing ones, cut back to the checkpoint.
+  /// `walls` are the boundaries of the model. Throws IoError.
+  Recorder(const Model& model, World<Dim>& world, Plan<Dim>& plan, const BoundaryMesh& walls,
+           const RunFolder& folder, const StateSource* resume = nullptr);
 
   /// Hands all rows to the system, then saves the length of each file.
   void save(StateSink& sink);
@@ -112,11 +112,11 @@ class Recorder {
   const Model& model_;
   World<Dim>& world_;
   Plan<Dim>& plan_;
+  const BoundaryMesh& walls_;
   RunFolder folder_;
   std::vector<ProbeRun> probes_;
   Schedule frames_, rows_;
-  std::map<std::string, PvdFile> pvd_;        ///< of the thread that writes, once the run has begun
-  std::optional<BoundaryMesh> moving_walls_;  ///< as the deck places them
+  std::map<std::string, PvdFile> pvd_;  ///< of the thread that writes, once the run has begun
   Series run_;
   Index frame_ = 0;
   double last_frame_time_ = -1;  ///< s; -1: no frame yet

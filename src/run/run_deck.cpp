@@ -72,12 +72,13 @@ class DeckRun {
       observer_.resumes(world.clock.time, world.clock.advection_steps, checkpoint.path);
     }
     write_file_atomically(folder.resolved_deck(), resolved_yaml(model_));
-    Recorder<Dim> recorder(model_, world, plan, folder, resumed);
+    const BoundaryMesh walls = boundary_mesh(model_);
+    Recorder<Dim> recorder(model_, world, plan, walls, folder, resumed);
     checkpoint.reader.reset();  // its memory is needed for the neighbor lists
     set_threads(sensible_threads(moving_particles(world), settings_.threads));
     const RunParts<Dim> parts{model_, world, plan, stepper, recorder};
     Keeper<Dim> keeper(parts, folder, before, processor_start_);
-    RunForecast<Dim> forecast(model_, world, plan, stepper, scene.sound, wishes, base);
+    RunForecast<Dim> forecast(model_, world, plan, stepper, scene.sound, wishes, walls, base);
 
     const std::optional<UnstableError> failure = step(parts, keeper, forecast);
     recorder.flush();

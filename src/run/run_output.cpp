@@ -5,7 +5,6 @@
 
 #include "output/vtu.h"
 #include "probes/probe.h"
-#include "run/boundary_mesh.h"
 #include "scene/build.h"
 #include "scene/world_view.h"
 
@@ -60,8 +59,7 @@ std::pair<double, double> frame_size(const Model& model, const ParticleSet<Dim>&
 
 }  // namespace
 
-double boundaries_bytes(const Model& model) {
-  const BoundaryMesh mesh = boundary_mesh(model);
+double boundaries_bytes(const BoundaryMesh& mesh, const Model& model) {
   if (mesh.part.empty()) return 0;
   return static_cast<double>(
       vtu_mesh_bytes(mesh.points, model.dimension, mesh.corners, {},
@@ -70,7 +68,7 @@ double boundaries_bytes(const Model& model) {
 
 template <int Dim>
 RunOutput run_output(const Model& model, const World<Dim>& world, const std::vector<Wish>& wishes,
-                     double steps) {
+                     const BoundaryMesh& walls, double steps) {
   RunOutput out;
   out.frames = count_of_every(model.frame_interval(), model.end_time, steps);
   const double rows = count_of_every(model.run_interval(), model.end_time, steps);
@@ -93,7 +91,7 @@ RunOutput run_output(const Model& model, const World<Dim>& world, const std::vec
     }
   out.buffer_bytes = out.frame_bytes + scratch;
   for (const auto& set : world.sets()) out.checkpoint_bytes += saved_bytes(*set);
-  out.walls_bytes = boundaries_bytes(model) * (boundaries_move(model) ? out.frames : 1);
+  out.walls_bytes = boundaries_bytes(walls, model) * (boundaries_move(model) ? out.frames : 1);
   return out;
 }
 
@@ -107,8 +105,10 @@ void sample_probes(const Model& model, const World<Dim>& world) {
   }
 }
 
-template RunOutput run_output<2>(const Model&, const World<2>&, const std::vector<Wish>&, double);
-template RunOutput run_output<3>(const Model&, const World<3>&, const std::vector<Wish>&, double);
+template RunOutput run_output<2>(const Model&, const World<2>&, const std::vector<Wish>&,
+                                 const BoundaryMesh&, double);
+template RunOutput run_output<3>(const Model&, const World<3>&, const std::vector<Wish>&,
+                                 const BoundaryMesh&, double);
 template void sample_probes<2>(const Model&, const World<2>&);
 template void sample_probes<3>(const Model&, const World<3>&);
 

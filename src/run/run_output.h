@@ -6,6 +6,7 @@
 
 #include "deck/model.h"
 #include "plan/plan.h"
+#include "run/boundary_mesh.h"
 
 namespace sphgeo {
 
@@ -22,10 +23,11 @@ struct RunOutput {
   double checkpoint_bytes = 0;  ///< of one checkpoint; until it is written it exists in memory too
 };
 
-/// Of a run of `steps` advection steps. Composes one frame to know its size.
+/// Of a run of `steps` advection steps; `walls` are its boundaries. Composes one frame to know its
+/// size.
 template <int Dim>
 RunOutput run_output(const Model& model, const World<Dim>& world, const std::vector<Wish>& wishes,
-                     double steps);
+                     const BoundaryMesh& walls, double steps);
 
 /// Bytes of a set's part of a checkpoint.
 template <int Dim>
@@ -38,7 +40,7 @@ double saved_bytes(const ParticleSet<Dim>& set) {
 }
 
 /// Bytes of a frame of the boundaries; 0 without any.
-double boundaries_bytes(const Model& model);
+double boundaries_bytes(const BoundaryMesh& mesh, const Model& model);
 
 /// Samples all probes once to measure the time.
 template <int Dim>
