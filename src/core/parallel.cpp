@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <ctime>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -34,6 +35,12 @@ int processors() {
 
 thread_local bool alone = false;
 
+double thread_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
 // How often a thread looks for work, or for the end of a loop, before it goes to sleep: some ten
 // microseconds. That spans the gaps between two loops of a step, and costs other programs little.
 constexpr int looks = 1000;
@@ -52,6 +59,10 @@ class Workers {
     wake_.notify_all();
     for (std::thread& t : threads_) t.join();
   }
+
+  /// Processor time that all but the thread that asks for a loop have taken, s.
+  double seconds_elsewhere() const { return elsewhere_; }
+  void count_time(bool on) { counting_ += on ? 1 : -1; }
 
   void set_count(int n) { count_ = std::max(n, 1); }
   int count() const { return count_; }
@@ -134,7 +145,9 @@ class Workers {
       if (!open_ || index >= count_ - 1) continue;
       ++active_;
       lock.unlock();
+      const double before = counting_ > 0 ? thread_seconds() : -1;
       take_blocks();
+      if (before >= 0) elsewhere_ += thread_seconds() - before;
       lock.lock();
       if (--active_ == 0) done_.notify_one();
     }
@@ -157,6 +170,9 @@ class Workers {
   Index blocks_ = 0;
   std::atomic<Index> next_ = 0;
   Failure failure_;
+
+  std::atomic<int> counting_ = 0;
+  std::atomic<double> elsewhere_ = 0;
 };
 
 // One for the process: threads are a resource of the machine, and hold no state of a scene.
@@ -170,6 +186,11 @@ Workers& workers() {
 void set_threads(int n) { workers().set_count(n); }
 
 int threads() { return workers().count(); }
+
+double loop_processor_seconds() { return thread_seconds() + workers().seconds_elsewhere(); }
+
+CountedLoops::CountedLoops() { workers().count_time(true); }
+CountedLoops::~CountedLoops() { workers().count_time(false); }
 
 void keep_loops_to_this_thread() { alone = true; }
 

@@ -21,6 +21,20 @@ void set_threads(int n);
 /// Number of threads that the next loop uses: all processors, unless set_threads says otherwise.
 int threads();
 
+/// Processor time so far of the calling thread, and of the other threads in its loops, s: the
+/// latter as far as a CountedLoops lived.
+double loop_processor_seconds();
+
+/// During its lifetime the processor time of all threads in loops is counted, which takes a
+/// microsecond a loop.
+class CountedLoops {
+ public:
+  CountedLoops();
+  ~CountedLoops();
+  CountedLoops(const CountedLoops&) = delete;
+  CountedLoops& operator=(const CountedLoops&) = delete;
+};
+
 /// From now on all loops of the calling thread run in it alone: for a thread that works beside the
 /// one whose loops all threads share, and would take them from it.
 void keep_loops_to_this_thread();

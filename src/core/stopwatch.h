@@ -3,6 +3,9 @@
 
 #include <chrono>
 #include <ctime>
+#include <optional>
+
+#include "core/parallel.h"
 
 namespace sphgeo {
 
@@ -11,8 +14,8 @@ inline double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Processor time of all threads of the program so far, s. A thread that waits for a loop or for
-/// its end looks for it for some ten microseconds before it sleeps; that counts as well.
+/// Processor time of all threads of the program so far, s. Other threads than the one that asks are
+/// known to some milliseconds only: good for a whole run, not for its parts.
 inline double processor_seconds() {
   timespec t{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
@@ -22,39 +25,41 @@ inline double processor_seconds() {
 /// What a part of a run has taken so far.
 struct Spent {
   double seconds = 0;    ///< on the clock
-  double processor = 0;  ///< of all threads together, s
+  double processor = 0;  ///< of the thread of the run and of all others in its loops, s
 };
 
 /// Adds to `spent` what its scope takes.
 class Stopwatch {
  public:
   explicit Stopwatch(Spent& spent) : Stopwatch(spent, true) {}
-  /// For a part that runs for the n-th time. To ask for the processor time takes half a
-  /// microsecond, twenty times as long as for that of the clock: of parts so short that this would
-  /// count, every 16th call is asked, and stands for the others.
+  /// For a part that runs for the n-th time. To ask for the processor time takes a microsecond,
+  /// fifty times as long as for that of the clock: of parts so short that this would count, every
+  /// 16th call is asked, and stands for the others.
   Stopwatch(Spent& spent, long n)
       : Stopwatch(spent, n % 16 == 0 || spent.seconds > long_enough * static_cast<double>(n)) {}
   ~Stopwatch() {
-    const double processor = asks_ ? processor_seconds() - processor_ : 0;
+    const double processor = counted_ ? loop_processor_seconds() - processor_ : 0;
     const double seconds = seconds_since(start_);
-    spent_.processor += asks_                ? processor
-                        : spent_.seconds > 0 ? seconds * spent_.processor / spent_.seconds
-                                             : seconds;
+    if (counted_) spent_.processor += processor;
+    else spent_.processor += seconds * (spent_.seconds > 0 ? spent_.processor / spent_.seconds : 1);
     spent_.seconds += seconds;
   }
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;
 
  private:
-  Stopwatch(Spent& spent, bool asks)
-      : spent_(spent), asks_(asks), processor_(asks ? processor_seconds() : 0) {}
+  Stopwatch(Spent& spent, bool asks) : spent_(spent) {
+    if (!asks) return;
+    counted_.emplace();
+    processor_ = loop_processor_seconds();
+  }
 
   static constexpr double long_enough = 1e-4;  // mean of a call, s
 
   Spent& spent_;
-  bool asks_;
-  double processor_;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::optional<CountedLoops> counted_;
+  double processor_ = 0;
 };
 
 }  // namespace sphgeo
