@@ -11,9 +11,7 @@
 #include "core/stopwatch.h"
 #include "probes/set_sums.h"
 #include "probes/solid_scene.h"
-#include "run/set_frame.h"
 #include "run/thread_count.h"
-#include "run/wishes.h"
 #include "scene/build.h"
 #include "scene/world_view.h"
 
@@ -63,11 +61,10 @@ Recorder<Dim>::Recorder(const Model& model, World<Dim>& world, Plan<Dim>& plan,
     : model_(model),
       world_(world),
       plan_(plan),
-      walls_(walls),
-      folder_(folder),
-      frames_(model.frame_interval()),
+      frame_times_(model.frame_interval()),
       rows_(model.run_interval()),
-      run_("run", run_columns(world.find("soil") != nullptr)) {
+      run_("run", run_columns(world.find("soil") != nullptr)),
+      frames_(model, world, walls, folder, files_) {
   if (resume) run_.resume(folder.run_csv(), bytes_at(*resume, "output/run"));
   else run_.write_to(folder.run_csv());
   for (const auto& spec : model.probes) {
@@ -80,13 +77,7 @@ Recorder<Dim>::Recorder(const Model& model, World<Dim>& world, Plan<Dim>& plan,
     probes_.push_back({std::move(probe), Schedule(model.probe_interval(*spec)), std::move(series)});
   }
   if (resume) load(*resume);
-  const auto open = [&](const std::string& set) {
-    if (frame_ > 0) pvd_.try_emplace(set, PvdFile::resume(folder.pvd(set), last_frame_time_));
-    else pvd_.try_emplace(set, folder.pvd(set));
-  };
-  for (const auto& set : world.sets())
-    if (set->phase() != "wall") open(set->name());
-  if (!model.boundaries.empty()) open("boundaries");
+  frames_.open();
 }
 
 template <int Dim>
@@ -113,14 +104,11 @@ void Recorder<Dim>::save(StateSink& sink) {
     put_bytes("output/probes/" + p.series->name(), *p.series);
     sink.put_number("output/probes/" + p.series->name() + "/next", p.schedule.next());
   }
-  sink.put_count("output/frames/count", frame_);
-  sink.put_number("output/frames/next", frames_.next());
-  sink.put_number("output/frames/last_time", last_frame_time_);
-  const double seconds[] = {spent_probes_.seconds, spent_probes_.processor, spent_frames_.seconds,
-                            spent_frames_.processor};
-  const std::int64_t calls[] = {calls_probes_, calls_frames_};
-  sink.put("output/seconds", seconds);
-  sink.put("output/calls", calls);
+  frames_.save(sink);
+  sink.put_number("output/frames/next", frame_times_.next());
+  sink.put_number("output/probes_seconds", spent_probes_.seconds);
+  sink.put_number("output/probes_processor_seconds", spent_probes_.processor);
+  sink.put_count("output/probes_calls", calls_probes_);
   // The ledger compares with the first row, which may be from an earlier process.
   for (const auto& [name, totals] : {std::pair{"first", &first_}, std::pair{"latest", &latest_}})
     if (*totals)
@@ -132,17 +120,11 @@ void Recorder<Dim>::load(const StateSource& source) {
   rows_.set_next(source.number("output/run/next"));
   for (ProbeRun& p : probes_)
     p.schedule.set_next(source.number("output/probes/" + p.series->name() + "/next"));
-  frame_ = source.count("output/frames/count");
-  frames_.set_next(source.number("output/frames/next"));
-  last_frame_time_ = source.number("output/frames/last_time");
-  double seconds[4];
-  std::int64_t calls[2];
-  source.get("output/seconds", std::span<double>(seconds));
-  source.get("output/calls", std::span<std::int64_t>(calls));
-  spent_probes_ = {seconds[0], seconds[1]};
-  spent_frames_ = {seconds[2], seconds[3]};
-  calls_probes_ = calls[0];
-  calls_frames_ = calls[1];
+  frames_.load(source);
+  frame_times_.set_next(source.number("output/frames/next"));
+  spent_probes_ = {source.number("output/probes_seconds"),
+                   source.number("output/probes_processor_seconds")};
+  calls_probes_ = source.count("output/probes_calls");
   for (const auto& [name, totals] : {std::pair{"first", &first_}, std::pair{"latest", &latest_}})
     if (const std::string at = std::string("output/ledger/") + name; source.has(at)) {
       TotalsArray numbers;
@@ -155,7 +137,7 @@ template <int Dim>
 void Recorder<Dim>::observe(double wall_seconds, bool last) {
   files_.check();
   const double t = world_.clock.time;
-  const bool frame = last || frames_.due(t), row = last || rows_.due(t);
+  const bool frame = last || frame_times_.due(t), row = last || rows_.due(t);
   const auto due = [&](const ProbeRun& p) { return last || p.schedule.due(t); };
   if (!frame && !row && std::none_of(probes_.begin(), probes_.end(), due)) return;
   plan_.run(Stage::observe);
@@ -172,7 +154,7 @@ void Recorder<Dim>::observe(double wall_seconds, bool last) {
   ++calls_probes_;
   if (!frame) return;
   write_frame();
-  frames_.done(t);
+  frame_times_.done(t);
 }
 
 template <int Dim>
@@ -277,57 +259,6 @@ void Recorder<Dim>::sample_run(double wall_seconds) {
 }
 
 template <int Dim>
-void Recorder<Dim>::write_frame() {
-  const Stopwatch watch(spent_frames_);
-  files_.wait();  // what it writes takes memory as well
-  std::vector<FrameFile> frame;
-  for (const auto& set : world_.sets())
-    if (set->phase() != "wall") frame.push_back(compose_set(*set));
-  if (!model_.boundaries.empty()) frame.push_back(compose_boundaries());
-  files_.begin([this, frame = std::move(frame)] {
-    for (const FrameFile& file : frame) write(file);
-  });
-  ++frame_;
-  last_frame_time_ = world_.clock.time;
-  ++calls_frames_;
-}
-
-template <int Dim>
-std::vector<std::string> Recorder<Dim>::frame_fields(const ParticleSet<Dim>& set) const {
-  const auto& asked = model_.output.frames.fields;
-  std::vector<std::string> names =
-      asked.empty() ? usual_fields(set.name(), world_.find("water") && world_.find("soil")) : asked;
-  std::erase_if(names, [&](const std::string& f) { return !set.fields().contains(f); });
-  return names;
-}
-
-template <int Dim>
-typename Recorder<Dim>::FrameFile Recorder<Dim>::compose_set(const ParticleSet<Dim>& set) {
-  VtuOptions options;
-  options.time = world_.clock.time;
-  options.precision =
-      model_.output.frames.precision == "float64" ? VtuPrecision::float64 : VtuPrecision::float32;
-  return {pvd_.at(set.name()), world_.clock.time, frame_, set.name(),
-          std::make_shared<FileImage>(set_frame(set, frame_fields(set), options))};
-}
-
-template <int Dim>
-typename Recorder<Dim>::FrameFile Recorder<Dim>::compose_boundaries() {
-  FrameFile file{pvd_.at("boundaries"), world_.clock.time, frame_, "boundaries", nullptr};
-  // Walls at rest are written once and listed at every time.
-  if (!boundaries_move(model_)) file.number = 0;
-  if (file.number == frame_)
-    file.image = std::make_shared<FileImage>(boundary_frame(walls_, model_, file.time));
-  return file;
-}
-
-template <int Dim>
-void Recorder<Dim>::write(const FrameFile& file) const {
-  if (file.image) file.image->write(folder_.frame(file.set, file.number));
-  file.collection.add(file.time, RunFolder::frame_name(file.set, file.number));
-}
-
-template <int Dim>
 const Series* Recorder<Dim>::series(const std::string& probe) const {
   if (probe == "run") return &run_;
   for (const ProbeRun& p : probes_)
@@ -337,7 +268,7 @@ const Series* Recorder<Dim>::series(const std::string& probe) const {
 
 template <int Dim>
 std::vector<TimeRow> Recorder<Dim>::time_rows() const {
-  return {{"probes", calls_probes_, spent_probes_}, {"frames", calls_frames_, spent_frames_}};
+  return {{"probes", calls_probes_, spent_probes_}, frames_.time_row()};
 }
 
 template <int Dim>

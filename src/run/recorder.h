@@ -3,23 +3,20 @@
 // composed while the run waits, and written beside it.
 
 #include <array>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "core/file_image.h"
 #include "core/side_thread.h"
 #include "deck/model.h"
-#include "output/pvd.h"
 #include "output/run_folder.h"
 #include "output/series.h"
 #include "output/summary.h"
 #include "plan/plan.h"
 #include "probes/probe.h"
 #include "probes/set_sums.h"
-#include "run/boundary_mesh.h"
+#include "run/frame_output.h"
 
 namespace sphgeo {
 
@@ -58,13 +55,12 @@ class Recorder {
   /// Waits until all files are on the disk. Throws IoError, so that what is lost is reported.
   void flush();
   /// Begins a frame of the present state, independent of the schedule (post-mortem).
-  void write_frame();
+  void write_frame() { frames_.write(); }
   /// Where frames and checkpoints are written, in the order of their times. One at a time, which is
   /// the memory that it takes.
   SideThread& files() { return files_; }
 
   const Series* series(const std::string& probe) const;
-  const Index& frames_written() const { return frame_; }
   /// Rows for the time table.
   std::vector<TimeRow> time_rows() const;
   /// Mass, momentum and energy at the start and at the latest row of run.csv.
@@ -96,33 +92,17 @@ class Recorder {
   Totals totals() const;
   void add_soil_totals(const ParticleSet<Dim>& soil, Totals& sum) const;
   static void add_set_totals(const ParticleSet<Dim>& set, const Energies& e, Totals& sum);
-  /// One file of a frame; without an image the collection names an earlier one.
-  struct FrameFile {
-    PvdFile& collection;
-    double time;
-    Index number;
-    std::string set;
-    std::shared_ptr<const FileImage> image;
-  };
-  FrameFile compose_set(const ParticleSet<Dim>& set);
-  FrameFile compose_boundaries();
-  void write(const FrameFile& file) const;
-  std::vector<std::string> frame_fields(const ParticleSet<Dim>& set) const;
 
   const Model& model_;
   World<Dim>& world_;
   Plan<Dim>& plan_;
-  const BoundaryMesh& walls_;
-  RunFolder folder_;
   std::vector<ProbeRun> probes_;
-  Schedule frames_, rows_;
-  std::map<std::string, PvdFile> pvd_;  ///< of the thread that writes, once the run has begun
+  Schedule frame_times_, rows_;
   Series run_;
-  Index frame_ = 0;
-  double last_frame_time_ = -1;  ///< s; -1: no frame yet
   std::optional<Totals> first_, latest_;
-  Spent spent_probes_, spent_frames_;
-  long calls_probes_ = 0, calls_frames_ = 0;
+  Spent spent_probes_;
+  long calls_probes_ = 0;
+  FrameOutput<Dim> frames_;
   SideThread files_;  ///< last: its tasks use the others
 };
 
