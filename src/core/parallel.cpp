@@ -1,6 +1,7 @@
 #include "core/parallel.h"
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <ctime>
 #include <exception>
@@ -41,9 +42,23 @@ double thread_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+using clock_type = std::chrono::steady_clock;
+
 // How often a thread looks for work, or for the end of a loop, before it goes to sleep: some ten
 // microseconds. That spans the gaps between two loops of a step, and costs other programs little.
 constexpr int looks = 1000;
+// Where a block takes longer, the threads of a loop end that much apart; to be woken takes longer
+// than to look on until then. No longer than this, as that is for other programs too.
+constexpr auto longest_look = std::chrono::microseconds(200);
+
+/// Looks whether there is an end of waiting; returns when there is, or after `patience`.
+template <class F>
+void look_for(clock_type::duration patience, F&& over) {
+  for (int k = 0; k < looks && !over(); ++k) relax();
+  if (patience <= clock_type::duration::zero()) return;
+  for (const auto start = clock_type::now(); !over() && clock_type::now() - start < patience;)
+    for (int k = 0; k < 50 && !over(); ++k) relax();
+}
 
 /// Threads that wait for loops. A loop hands out its blocks one by one; the thread that asks for it
 /// works along, and at the end waits only for those that took part. So on a busy machine a thread
@@ -60,7 +75,8 @@ class Workers {
     for (std::thread& t : threads_) t.join();
   }
 
-  /// Processor time that all but the thread that asks for a loop have taken, s.
+  /// Processor time that all but the thread that asks for a loop have taken in it, less that in
+  /// which the latter waited for its end, s.
   double seconds_elsewhere() const { return elsewhere_; }
   void count_time(bool on) { counting_ += on ? 1 : -1; }
 
@@ -88,14 +104,20 @@ class Workers {
       ++loop_;
     }
     wake_.notify_all();
-    take_blocks();
-    for (int k = 0; k < looks && active_ > 0; ++k) relax();
+    const auto start = clock_type::now();
+    if (const Index own = take_blocks(); own > 0) {
+      const auto two_blocks = 2 * (clock_type::now() - start) / own;
+      patience_ = std::min<clock_type::duration>(two_blocks, longest_look);
+    }
     Failure failure;
     {
+      const double before = counting_ > 0 ? thread_seconds() : -1;
+      look_for(patience_, [&] { return active_ == 0; });
       std::unique_lock lock(mutex_);
       open_ = false;
       done_.wait(lock, [&] { return active_ == 0; });
       failure = std::move(failure_);
+      if (before >= 0) elsewhere_ -= thread_seconds() - before;  // waiting is no work
     }
     busy_ = false;
     failure.rethrow();
@@ -126,18 +148,21 @@ class Workers {
     }
   }
 
-  void take_blocks() {
+  /// Returns how many it took.
+  Index take_blocks() {
     Failure failure;
-    for (Index b; (b = next_.fetch_add(1, std::memory_order_relaxed)) < blocks_;)
+    Index taken = 0;
+    for (Index b; (b = next_.fetch_add(1, std::memory_order_relaxed)) < blocks_; ++taken)
       try_block(call_, context_, b, failure);
-    if (!failure.what) return;
+    if (!failure.what) return taken;
     const std::lock_guard lock(mutex_);
     failure_.keep(failure.block, failure.what);
+    return taken;
   }
 
   void serve(int index) {
     for (std::uint64_t seen = 0;;) {
-      for (int k = 0; k < looks && loop_ == seen; ++k) relax();
+      look_for(patience_, [&] { return loop_ != seen; });
       std::unique_lock lock(mutex_);
       wake_.wait(lock, [&] { return loop_ != seen; });
       if (stop_) return;
@@ -171,6 +196,7 @@ class Workers {
   std::atomic<Index> next_ = 0;
   Failure failure_;
 
+  std::atomic<clock_type::duration> patience_ = clock_type::duration::zero();  // see look_for
   std::atomic<int> counting_ = 0;
   std::atomic<double> elsewhere_ = 0;
 };
