@@ -56,13 +56,15 @@ void Keeper<Dim>::begin(double wall_seconds) {
   parts_.plan.save(file);
   parts_.recorder.save(file);
   bytes_ = file.finish();
-  files.begin([this, state] {
+  // The task may outlive the keeper, where the run ends by an exception.
+  files.begin([&recorder = parts_.recorder, path = folder_.checkpoint(),
+               previous = folder_.previous_checkpoint(), state, writing = writing_] {
     const auto start = std::chrono::steady_clock::now();
-    parts_.recorder.wait_for_disk();  // the tables are at least as long as the checkpoint says
-    state->write(folder_.checkpoint(), folder_.previous_checkpoint());
+    recorder.wait_for_disk();  // the tables are at least as long as the checkpoint says
+    state->write(path, previous);
     const double seconds = seconds_since(start);
-    last_writing_ = seconds;
-    writing_ = writing_ + seconds;
+    writing->last = seconds;
+    writing->all = writing->all + seconds;
   });
 }
 

@@ -43,15 +43,19 @@ class Keeper {
   }
   /// From the start of the last one until it was on the disk; what is still being written counts as
   /// the one before it, s.
-  double last_seconds() const { return last_held_up_ + last_writing_; }
+  double last_seconds() const { return last_held_up_ + writing_->last; }
   /// The same for all of them, s.
-  double seconds() const { return spent_.seconds + writing_; }
+  double seconds() const { return spent_.seconds + writing_->all; }
   /// What the run waited for.
   const Spent& spent() const { return spent_; }
   long count() const { return count_; }
   std::uint64_t bytes() const { return bytes_; }
 
  private:
+  /// Time that files took beside the run, s; set by the thread that writes.
+  struct Writing {
+    std::atomic<double> last = 0, all = 0;
+  };
   void begin(double wall_seconds);
 
   RunParts<Dim> parts_;
@@ -60,7 +64,7 @@ class Keeper {
   double processor_start_;
   double kept_at_ = 0;  ///< wall time of this process, s
   double last_held_up_ = 0;
-  std::atomic<double> last_writing_ = 0, writing_ = 0;  ///< set by the thread that writes
+  std::shared_ptr<Writing> writing_ = std::make_shared<Writing>();
   Spent spent_;
   long count_ = 0;
   std::uint64_t bytes_ = 0;
