@@ -1,6 +1,7 @@
 #pragma once
 // Time that parts of a run take: on the clock, and of the processors.
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <optional>
@@ -26,6 +27,7 @@ inline double processor_seconds() {
 struct Spent {
   double seconds = 0;    ///< on the clock
   double processor = 0;  ///< of the thread of the run and of all others in its loops, s
+  double latest = 0;     ///< of it that of the latest call that was asked, s
 };
 
 /// Adds to `spent` what its scope takes.
@@ -40,8 +42,9 @@ class Stopwatch {
   ~Stopwatch() {
     const double processor = counted_ ? loop_processor_seconds() - processor_ : 0;
     const double seconds = seconds_since(start_);
-    if (counted_) spent_.processor += processor;
-    else spent_.processor += seconds * (spent_.seconds > 0 ? spent_.processor / spent_.seconds : 1);
+    if (counted_) spent_.latest = processor;
+    // Of a call shorter than the asking, no more than there can be.
+    spent_.processor += std::min(spent_.latest, threads() * seconds);
     spent_.seconds += seconds;
   }
   Stopwatch(const Stopwatch&) = delete;

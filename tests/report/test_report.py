@@ -18,7 +18,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-UNITS = {"kB": 1e3, "MB": 1e6, "GB": 1e9, "s": 1, "min": 60, "h": 3600, "d": 86400, "": 1}
+UNITS = {"kB": 1e3, "MB": 1e6, "GB": 1e9, "s": 1, "min": 60, "h": 3600, "d": 86400, "": 1, "%": 0.01}
 
 
 class Page(HTMLParser):
@@ -58,7 +58,7 @@ def number_of(text):
     text = text.replace("\u202f", "").replace("\u00a0", " ").replace("−", "-")
     raised = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
     text = re.sub(r"(×?)10([⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+)", lambda m: ("" if m[1] else "1") + "e" + m[2].translate(raised), text)
-    parts = re.findall(r"(-?[\d.]+(?:e-?\d+)?) ?([A-Za-z]*)", text)
+    parts = re.findall(r"(-?[\d.]+(?:e-?\d+)?) ?([A-Za-z%]*)", text)
     return sum(float(value) * UNITS[unit] for value, unit in parts)
 
 
@@ -104,8 +104,9 @@ def check_numbers(page, folders):
     for run, path, text in page.traced:
         value = at(files[run - 1], path)
         seen = number_of(text)
-        # A byte count in MB and a wall time in seconds are rounded; all else has three digits or more.
-        loose = 0.06e6 if "bytes" in path else 0.6 if path.endswith("wall_s") and value >= 100 else 0
+        # A byte count in MB, a wall time in seconds and a share in per mille are rounded; all else has three digits or more.
+        loose = (0.06e6 if "bytes" in path else 0.6 if path.endswith("wall_s") and value >= 100 else
+                 6e-4 if path.endswith("busy") else 0)
         if abs(seen - value) > max(6e-3 * abs(value), loose):
             yield f"{path}: the page shows '{text}', summary.json has {value}"
 
