@@ -34,14 +34,11 @@ inline constexpr Stage all_stages[] = {
     Stage::solid_finish, Stage::rate,          Stage::correct,     Stage::observe};
 const char* stage_name(Stage stage);
 
-/// read: the value is needed. write: set from scratch. add: summed onto a value that another effect
-/// wrote in the same stage. update: changed in place.
-enum class Access { read, write, add, update };
-
 struct FieldUse {
   std::string set;
   const FieldSpec* field;
   Access access;
+  bool optional = false;  ///< the effect does without where no other effect computes it
 };
 
 struct ListUse {
@@ -52,6 +49,15 @@ struct Needs {
   std::vector<FieldUse> fields;
   std::vector<ListUse> lists;
   std::vector<std::string> reference_lists = {};  ///< sets of solids whose pairs at rest are walked
+  std::vector<RecordUse> records = {};
+
+  /// Names fields of record R of a set; all of them where none is given.
+  template <class R, class... F>
+  Needs& record(const std::string& set, Access access, F...) {
+    const unsigned slots = sizeof...(F) == 0 ? R::spec.slots() : (0U | ... | F::slots);
+    records.push_back({set, &R::spec, access, slots});
+    return *this;
+  }
 };
 
 /// What `check --explain`, the time table and the reference page say of an effect.

@@ -29,6 +29,7 @@ class RigidKick final : public Effect<Dim> {
   Needs needs() const override {
     return {{{set_name(), &fields::acceleration_sum, Access::read},
              {set_name(), &fields::mass, Access::read},
+             {set_name(), &fields::fluid_force, Access::read, true},
              {set_name(), &fields::position, Access::update},
              {set_name(), &fields::velocity, Access::update},
              {set_name(), &fields::acceleration, Access::update}},
@@ -86,7 +87,7 @@ class RigidKick final : public Effect<Dim> {
     RigidMotion motion = bodies_.motion(world, body);
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
     for (const Index i : particles) {
-      Vec<Dim> f = m[i] * (sum[i] + world.pull(x[i]));
+      Vec<Dim> f = m[i] * (sum[i] + world.body_acceleration(x[i]));
       if (fluid) f += (*fluid)[i];
       force += to_space<Dim>(f);
       torque += (to_space<Dim>(x[i]) - motion.center).cross(to_space<Dim>(f));

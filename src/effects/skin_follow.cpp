@@ -1,6 +1,6 @@
 #include "core/parallel.h"
+#include "effects/pack_walls.h"
 #include "effects/skin.h"
-#include "effects/wall_records.h"
 
 namespace sphgeo {
 namespace {
@@ -24,7 +24,9 @@ class SkinFollow final : public Effect<Dim> {
   }
 
   explicit SkinFollow(const World<Dim>& world)
-      : solids_(solid_sets(world)), seen_(world.find("water") || world.find("soil")) {}
+      : solids_(solid_sets(world)),
+        seen_(world.find("water") || world.find("soil")),
+        current_geometry_(!world.frozen_geometry()) {}
 
   std::string acts_on() const override { return "skin"; }
   Needs needs() const override {
@@ -34,6 +36,9 @@ class SkinFollow final : public Effect<Dim> {
     for (const std::string& set : solids_)
       for (const FieldSpec* f : {&fields::position, &fields::velocity})
         n.fields.push_back({set, f, Access::read});
+    if (!seen_) return n;
+    need_wall_packing<Dim>(n, "skin", Access::write);
+    if (current_geometry_) n.record<Position<Dim>>("skin", Access::update);
     return n;
   }
 
@@ -49,13 +54,14 @@ class SkinFollow final : public Effect<Dim> {
     });
     if (!seen_) return;
     pack_walls(world, "skin");
-    if (!world.frozen_geometry()) world.pack_positions(skin);
+    if (current_geometry_) world.pack_positions(skin);
   }
   std::size_t bytes() const override { return map_.bytes(); }
 
  private:
   std::vector<std::string> solids_;
   bool seen_;  // by water or soil
+  bool current_geometry_;
   SkinMap<Dim> map_;
 };
 

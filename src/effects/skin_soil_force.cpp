@@ -21,11 +21,11 @@ class SkinSoilForce final : public Effect<Dim> {
 
   std::string acts_on() const override { return "solids near soil"; }
   Needs needs() const override {
-    return {{{"soil", &fields::stress, Access::read},
-             {"soil", &fields::volume, Access::read},
-             {"skin", &fields::volume, Access::read},
-             {"skin", &fields::soil_force, Access::write}},
-            {{"skin", "soil"}, {"soil", "skin"}}};
+    Needs n{{{"skin", &fields::soil_force, Access::write}}, {{"skin", "soil"}, {"soil", "skin"}}};
+    n.record<Position<Dim>>("soil", Access::read);
+    need_soil_records<Dim>(n, Access::read, true);
+    need_wall_records<Dim>(n, "skin");
+    return n;
   }
 
   void apply(World<Dim>& world) override {
@@ -35,11 +35,8 @@ class SkinSoilForce final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       gather<SoilForceOnWall<Dim>::template Sums>(
-          world.list("skin", "soil"),
-          with(world.records("skin", 0).template get<T>(),
-               world.records("skin", 1).template get<T>()),
-          stress_records<T, soil_records<Dim>>(world), pair,
-          [&](Index i, const auto& sum) { force[i] = to_vec(sum.force); });
+          world.list("skin", "soil"), wall_records<T>(world, "skin"), soil_records<T, true>(world),
+          pair, [&](Index i, const auto& sum) { force[i] = to_vec(sum.force); });
     });
   }
 };

@@ -1,6 +1,6 @@
 #include "core/parallel.h"
+#include "effects/pack_walls.h"
 #include "effects/skin.h"
-#include "effects/wall_records.h"
 
 namespace sphgeo {
 namespace {
@@ -42,12 +42,10 @@ class SkinState final : public Effect<Dim> {
       if (elastic_[k]) {
         n.fields.push_back({solids_[k], &fields::reference_correction, Access::read});
         n.reference_lists.push_back(solids_[k]);
+        need_deformation<Dim>(n, solids_[k]);
       }
+    need_wall_packing<Dim>(n, "skin", Access::write);
     return n;
-  }
-  void prepare(World<Dim>& world) override {
-    world.records("skin", 0);
-    world.records("skin", 1);
   }
 
   void apply(World<Dim>& world) override {
@@ -61,12 +59,15 @@ class SkinState final : public Effect<Dim> {
       rows_[static_cast<std::size_t>(number[s])][static_cast<std::size_t>(map_.at(s).i)] =
           static_cast<std::int32_t>(s);
     for (std::size_t k = 0; k < solids_.size(); ++k) turn_normals(world, k);
+    restore(world);
+  }
+  void restore(World<Dim>& world) override {
+    ParticleSet<Dim>& skin = world.set("skin");
     auto& volume = skin.scalar(fields::volume);
     const auto& at_rest = skin.scalar(fields::reference_volume);
     parallel_for(skin.size(), [&](Index s) { volume[s] = at_rest[s]; });
-    restore(world);
+    pack_walls(world, "skin");
   }
-  void restore(World<Dim>& world) override { pack_walls(world, "skin"); }
   std::size_t bytes() const override {
     std::size_t sum = map_.bytes();
     for (const auto& rows : rows_) sum += rows.capacity() * sizeof(std::int32_t);
@@ -95,7 +96,7 @@ class SkinState final : public Effect<Dim> {
     if (elastic_[k]) {
       world.with_pair_precision([&](auto number) {
         using T = decltype(number);
-        auto& records = world.records(solids_[k], 0).template get<T>();
+        const auto records = write_records<packed::Displacement<Dim>, T>(world, solids_[k]);
         parallel_for(set.size(),
                      [&](Index i) { deformation.pack(records, i, x[i], reference[i], part[i]); });
       });

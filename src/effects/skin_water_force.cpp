@@ -1,5 +1,5 @@
 #include "effects/skin.h"
-#include "effects/water_pull.h"
+#include "effects/water_wall_force.h"
 
 namespace sphgeo {
 namespace {
@@ -21,18 +21,20 @@ class SkinWaterForce final : public Effect<Dim> {
 
   std::string acts_on() const override { return "solids near water"; }
   Needs needs() const override {
-    return {{{"water", &fields::pressure, Access::read},
-             {"water", &fields::acceleration, Access::read},
-             {"water", &fields::density, Access::read},
-             {"skin", &fields::volume, Access::read},
-             {"skin", &fields::water_force, Access::write}},
+    Needs n{{{"skin", &fields::water_force, Access::write}},
             {{"skin", "water"}, {"water", "skin"}}};
+    need_pressure_gradient<Dim>(n);
+    n.record<Position<Dim>>("water", Access::read);
+    n.record<packed::WaterState<Dim>>("water", Access::read);
+    need_wall_records<Dim>(n, "skin");
+    return n;
   }
-  void prepare(World<Dim>& world) override { world.records("water", 1); }
 
   void apply(World<Dim>& world) override {
     const ParticleSet<Dim>& water = world.set("water");
-    const WaterForceOnWall<Dim> pair{
+    using Gradient = packed::PressureGradient<Dim>;
+    using Pair = WaterForceOnWall<Dim, packed::WaterState>;
+    const Pair pair{
         WallPair<Dim>(world.parameters().water, water.smoothing_length(), water.spacing())};
     auto& force = world.set("skin").vector(fields::water_force);
     const Field<double>* scale = gradient_scale(world);
@@ -40,17 +42,15 @@ class SkinWaterForce final : public Effect<Dim> {
     const NeighborList& around = world.list("water", "skin");
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& second = world.records("water", 1).template get<T>();
-      pack_water_pull(world, around, second);
+      const auto gradient = write_records<Gradient, T>(world, "water");
+      pack_pressure_gradient(world, around, gradient);
       // The volume in the records bears this factor once already.
       for (const auto& block : around.blocks())
         for (const std::uint32_t i : block.targets)
-          second[i][pair.scale - record_size] = static_cast<T>(scale ? (*scale)[i] : 1.0);
-      gather<WaterForceOnWall<Dim>::template Sums>(
-          world.list("skin", "water"),
-          with(world.records("skin", 0).template get<T>(),
-               world.records("skin", 1).template get<T>()),
-          with(world.records("water", 0).template get<T>(), second), pair,
+          gradient[i].put(Gradient::reaction_scale, scale ? (*scale)[i] : 1.0);
+      gather<Pair::template Sums>(
+          world.list("skin", "water"), wall_records<T>(world, "skin"),
+          with<T>(read_records<packed::WaterState<Dim>, T>(world, "water"), gradient), pair,
           [&](Index i, const auto& sum) { force[i] = to_vec(sum.force); });
     });
   }

@@ -28,6 +28,7 @@ class SolidKick final : public Effect<Dim> {
   Needs needs() const override {
     return {{{set_, &fields::acceleration_sum, Access::read},
              {set_, &fields::clamp, Access::read},
+             {set_, &fields::fluid_force, Access::read, true},
              {set_, &fields::position, Access::update},
              {set_, &fields::velocity, Access::update},
              {set_, &fields::acceleration, Access::update}},
@@ -56,7 +57,7 @@ class SolidKick final : public Effect<Dim> {
       if (!p.elastic) return;
       Vec<Dim> before = v[i];
       if (clamp[i] < 0) {
-        Vec<Dim> a = sum[i] + world.pull(x[i]);
+        Vec<Dim> a = sum[i] + world.body_acceleration(x[i]);
         if (fluid) a += (*fluid)[i] / m[i];
         // Damping at the mean of both velocities: stable at any rate.
         v[i] = (v[i] * (1 - 0.5 * dt * p.damping) + dt * a) / (1 + 0.5 * dt * p.damping);

@@ -5,7 +5,7 @@
 #include "core/parallel.h"
 #include "deck/motion.h"
 #include "effects/effect.h"
-#include "effects/wall_records.h"
+#include "effects/pack_walls.h"
 #include "sph/parameters.h"
 
 namespace sphgeo {
@@ -40,13 +40,16 @@ class WallMotion final : public Effect<Dim> {
   static Binding<Dim> bind(const World<Dim>& world) {
     for (const BoundaryMotion& wall : world.parameters().boundary_motions)
       if (world.find("walls") && wall.motion)
-        return {std::make_unique<WallMotion>(), "boundary '" + wall.name + "' has a motion"};
+        return {std::make_unique<WallMotion>(!world.frozen_geometry()),
+                "boundary '" + wall.name + "' has a motion"};
     return {"no boundary has a motion"};
   }
 
+  explicit WallMotion(bool current_geometry) : current_geometry_(current_geometry) {}
+
   std::string acts_on() const override { return "walls"; }
   Needs needs() const override {
-    return {{{"walls", &fields::part, Access::read},
+    Needs n{{{"walls", &fields::part, Access::read},
              {"walls", &fields::reference_position, Access::read},
              {"walls", &fields::reference_normal, Access::read},
              {"walls", &fields::position, Access::update},
@@ -54,6 +57,9 @@ class WallMotion final : public Effect<Dim> {
              {"walls", &fields::acceleration, Access::update},
              {"walls", &fields::normal, Access::update}},
             {}};
+    need_wall_packing<Dim>(n, "walls", Access::update);
+    if (current_geometry_) n.record<Position<Dim>>("walls", Access::update);
+    return n;
   }
 
   void prepare(World<Dim>& world) override {
@@ -95,9 +101,9 @@ class WallMotion final : public Effect<Dim> {
       n[i] = to_scene<Dim>(motion.direction(to_space<Dim>(n0[i])));
     });
     pack_walls(world, "walls", &moving_);
-    if (world.frozen_geometry()) return;
+    if (!current_geometry_) return;
     world.with_pair_precision([&](auto number) {
-      auto& record = world.records("walls").template get<decltype(number)>();
+      const auto record = write_records<Position<Dim>, decltype(number)>(world, "walls");
       for (const Index i : moving_) record.set_position(i, x[i]);
     });
   }
@@ -114,6 +120,7 @@ class WallMotion final : public Effect<Dim> {
       if (motions_[static_cast<std::size_t>(part[i])]) moving_.push_back(i);
   }
 
+  bool current_geometry_;
   std::vector<const Motion*> motions_;  ///< by number of the boundary; null: it rests
   std::vector<Index> moving_;
   long arrangement_ = -1;

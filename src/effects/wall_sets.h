@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "effects/effect.h"
+#include "effects/wall_packing.h"
 
 namespace sphgeo {
 
@@ -18,11 +19,13 @@ std::vector<std::string> wall_sets(const World<Dim>& world) {
   return names;
 }
 
-/// Adds to the needs of an effect on `target` that it walks the walls around it.
-inline void need_walls(Needs& needs, const std::string& target,
+/// Adds to the needs of an effect on `target` that it sums over the volumes of the walls around it.
+template <int Dim>
+void need_wall_volumes(Needs& needs, const std::string& target,
                        const std::vector<std::string>& walls) {
   for (const std::string& set : walls) {
-    needs.fields.push_back({set, &fields::volume, Access::read});
+    needs.record<Position<Dim>>(set, Access::read);
+    needs.record<packed::Wall<Dim>>(set, Access::read, packed::Wall<Dim>::volume);
     needs.lists.push_back({target, set});
   }
 }

@@ -54,8 +54,8 @@ inline constexpr FieldSpec initial_volume_fraction{"initial_volume_fraction", sc
                                                    unit::none, "volume fraction at t = 0"};
 inline constexpr FieldSpec stress{"stress", tensor, state, unit::pressure,
                                   "effective stress, tension positive: xx, yy, zz, xy, yz, xz"};
-inline constexpr FieldSpec crowding{
-    "crowding", scalar, derived, unit::none,
+inline constexpr FieldSpec number_density_ratio{
+    "number_density_ratio", scalar, derived, unit::none,
     "sum over neighbors at their volume at rest, over that of a lattice"};
 inline constexpr FieldSpec gradient_correction{
     "gradient_correction", tensor, state, unit::none,
@@ -161,7 +161,7 @@ inline constexpr const FieldSpec* all[] = {&id,
                                            &volume_fraction_rate,
                                            &initial_volume_fraction,
                                            &stress,
-                                           &crowding,
+                                           &number_density_ratio,
                                            &gradient_correction,
                                            &plastic_strain,
                                            &plastic_work,

@@ -271,7 +271,8 @@ std::string Guard<Dim>::suspect(const ParticleSet<Dim>& set, Index i,
                         ? fmt::format("; it belongs to {} '{}' ({})", wall ? "boundary" : "body",
                                       origins[part].name, origins[part].place)
                         : "; it has entered through a boundary";
-  if (parameters.body_force && !world_.pull(set.vector(fields::position)[i]).allFinite()) {
+  if (parameters.body_force &&
+      !world_.body_acceleration(set.vector(fields::position)[i]).allFinite()) {
     out += "; body_force is not finite there (" + parameters.body_force_place + ")";
   } else if (!look_for.empty()) {
     out += "; likely: " + look_for;

@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -16,22 +15,9 @@
 #include "sph/neighborhoods.h"
 #include "sph/particle_sets.h"
 #include "sph/pistons.h"
-#include "sph/records.h"
+#include "sph/record_store.h"
 
 namespace sphgeo {
-
-/// Packed records of one set in the precision of the pair sums; the other one stays empty.
-template <int Dim>
-struct RecordPair {
-  Records<Dim, float> single;
-  Records<Dim, double> full;
-
-  template <class T>
-  Records<Dim, T>& get() {
-    if constexpr (std::is_same_v<T, float>) return single;
-    else return full;
-  }
-};
 
 template <int Dim>
 class World {
@@ -44,7 +30,7 @@ class World {
   const Parameters& parameters() const { return *parameters_; }
   const Vec<Dim>& gravity() const { return gravity_; }  ///< m/s2
   /// Gravity and the deck's body force at a place, now, m/s2.
-  Vec<Dim> pull(const Vec<Dim>& at) const;
+  Vec<Dim> body_acceleration(const Vec<Dim>& at) const;
   Clock clock;
 
   /// Adds a set. `moves` is false for sets whose particles never change place.
@@ -95,8 +81,9 @@ class World {
   bool single_precision() const { return single_; }
   /// Whether pair sums see positions of the last rearrangement (true) or of now.
   bool frozen_geometry() const { return frozen_; }
-  /// Records number `which` of a set: kept by the effects, sized by rearrange().
-  RecordPair<Dim>& records(const std::string& set, int which = 0) { return records_[{set, which}]; }
+  /// Packed records: written by the effects, sized by rearrange().
+  RecordStore<Dim>& records() { return records_; }
+  const RecordStore<Dim>& records() const { return records_; }
 
   /// Line 28 of Algorithm 2: removes lost particles, sorts by cell, rebuilds grids and lists and
   /// the places in the records.
@@ -129,7 +116,7 @@ class World {
  private:
   void arrange_solids(ParticleSet<Dim>& set);
   void sort(ParticleSet<Dim>& set, std::span<const Vec<Dim>> at);
-  bool packed(const std::string& set) const { return records_.contains({set, 0}); }
+  bool packed(const std::string& set) const { return records_.holds(set, 0); }
   void resize_records(const ParticleSet<Dim>& set);
   void load_packed(const StateSource& source, const std::string& set);
 
@@ -138,7 +125,7 @@ class World {
   bool single_, frozen_;
   ParticleSets<Dim> sets_;
   Neighborhoods<Dim> neighborhoods_;
-  std::map<std::pair<std::string, int>, RecordPair<Dim>> records_;
+  RecordStore<Dim> records_;
   BoundaryLedger<Dim> ledger_;
   Pistons pistons_;
   long arrangement_ = 0;
@@ -146,5 +133,15 @@ class World {
 
 extern template class World<2>;
 extern template class World<3>;
+
+/// Records of type R of a set in precision T, to read or to pack (see RecordStore).
+template <class R, class T, int Dim>
+RecordSource<R, T> read_records(World<Dim>& world, const std::string& set) {
+  return world.records().template read<R, T>(set);
+}
+template <class R, class T, int Dim>
+RecordPacking<R, T> write_records(World<Dim>& world, const std::string& set) {
+  return world.records().template write<R, T>(set);
+}
 
 }  // namespace sphgeo
