@@ -8,7 +8,7 @@ namespace {
 
 /// Drag between water and soil (Eqs. 29 to 31, 46, 59), after all other forces of the step.
 ///
-/// Each water particle meets the soil's mean velocity around it (Eq. 57), and hands its impulse to
+/// Each water particle meets the soil's mean velocity around it (Eq. 57), and gives its impulse to
 /// the soil particles with the weights of that mean: one coefficient for both sides, so momentum is
 /// exact. As the drag of fine soil is stiffer than any acoustic step, it is taken with the relative
 /// velocity at the end of the step. For a pair of masses m and M that reads

@@ -12,18 +12,18 @@
 
 namespace sphgeo {
 
-/// The places of Algorithm 2 where effects run, in order.
+/// The stages of Algorithm 2 at which effects run, in order.
 enum class Stage {
   exchange,       ///< once per advection step, before particles are sorted: some enter, some leave
   reinitialize,   ///< once per advection step, after the neighbor lists are new (lines 11, 12)
   predict,        ///< to the middle of the acoustic step (Eq. 96)
   force,          ///< accelerations at the middle (Eqs. 59, 60)
-  kick,           ///< velocity and place at the end (Eqs. 97, 98)
+  kick,           ///< velocity and position at the end (Eqs. 97, 98)
   solid_predict,  ///< kappa times per acoustic step: solids to the middle of their own step (Eq.
                   ///< 99)
   solid_force,    ///< their accelerations there (Eqs. 65, 79)
-  solid_kick,     ///< their velocity and place at its end (Eqs. 100, 101)
-  solid_finish,   ///< once per acoustic step: what water and soil see of the solids
+  solid_kick,     ///< their velocity and position at its end (Eqs. 100, 101)
+  solid_finish,   ///< once per acoustic step: the surface of the solids as water and soil use it
   rate,           ///< rates of density with the new velocities, also of the solids (Eq. 58)
   correct,        ///< density at the end (Eq. 98)
   observe         ///< only when a probe or a frame is due

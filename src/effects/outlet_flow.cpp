@@ -27,7 +27,7 @@ class OutletFlow final : public Effect<Dim> {
   }
 
   void apply(World<Dim>& world) override {
-    Exchanged<Dim>& book = world.exchanged(outlet_.name);
+    Exchanged<Dim>& account = world.exchanged(outlet_.name);
     for (const std::string& name : outlet_.sets) {
       ParticleSet<Dim>* set = world.find(name);
       if (set == nullptr) continue;
@@ -44,9 +44,9 @@ class OutletFlow final : public Effect<Dim> {
           keep.push_back(static_cast<std::uint32_t>(i));
           continue;
         }
-        book.left += 1;
-        book.add(-1, set->scalar(fields::mass)[i], x[i], set->vector(fields::velocity)[i],
-                 world.gravity());
+        account.left += 1;
+        account.add(-1, set->scalar(fields::mass)[i], x[i], set->vector(fields::velocity)[i],
+                    world.gravity());
       }
       if (static_cast<Index>(keep.size()) < set->size()) set->permute(keep);
     }

@@ -18,8 +18,8 @@ void need_wall_packing(Needs& needs, const std::string& name, Access access) {
   needs.record<packed::WallSurface<Dim>>(name, access);
 }
 
-/// Writes both records of particles of "walls", or of the "skin" of solids, from their fields (not
-/// the positions): of all, or of `those` alone.
+/// Writes both records of particles of "walls", or of the "interface" of solids, from their fields
+/// (not the positions): of all, or of `those` alone.
 template <int Dim>
 void pack_walls(World<Dim>& world, const std::string& name = "walls",
                 const std::vector<Index>* those = nullptr) {
@@ -30,15 +30,16 @@ void pack_walls(World<Dim>& world, const std::string& name = "walls",
   const Field<double>* own_volume =
       walls.has(fields::reference_volume) ? &walls.scalar(fields::reference_volume) : nullptr;
   const auto& v = walls.vector(fields::velocity);
-  const bool deformable = name == "skin";
+  const bool deformable = name == "interface";
   const auto* a = !deformable && walls.has(fields::acceleration)
                       ? &walls.vector(fields::acceleration)
                       : nullptr;  // null: at rest
   const auto& n = walls.vector(fields::normal);
   const auto& no_slip = walls.scalar(fields::no_slip);
   const auto& x = walls.vector(fields::position);
-  const auto* corner = walls.has(fields::corner) ? &walls.scalar(fields::corner)
-                                                 : nullptr;  // null: no soil, or the skin of solids
+  const auto* corner = walls.has(fields::corner)
+                           ? &walls.scalar(fields::corner)
+                           : nullptr;  // null: no soil, or the interface of solids
   world.with_pair_precision([&](auto number) {
     using T = decltype(number);
     const auto records = write_records<Wall, T>(world, name);

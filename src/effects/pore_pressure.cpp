@@ -8,7 +8,7 @@ namespace {
 
 /// Force of the pore pressure on the soil, -n^s grad p (Eqs. 11, 46).
 ///
-/// The print interpolates p to the soil (Eq. 47) and takes its gradient there; with the water's
+/// The paper interpolates p to the soil (Eq. 47) and takes its gradient there; with the water's
 /// -n^w grad p, taken elsewhere with another kernel, both do not add up to the gradient of the
 /// mixture's pressure, and momentum comes from nowhere wherever the porosity varies. Here the
 /// pressure force of each water particle on the mixture, F_i = -V_i grad p, is known from the sums

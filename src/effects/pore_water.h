@@ -1,7 +1,7 @@
 #pragma once
 // Water in soil: what the effects that couple the two share.
 //
-// Pairs of water and soil use the kernel of the water and the places of the last rearrangement,
+// Pairs of water and soil use the kernel of the water and the positions of the last rearrangement,
 // whatever the other pairs of the soil use: their weights stay the same within an advection step,
 // so what one phase gives is what the other takes, to round-off. A soil particle k counts with the
 // volume of its grains, omega_k = m_k / rho^s = n_k V_k, which never changes. With it

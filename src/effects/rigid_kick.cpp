@@ -15,10 +15,11 @@ template <int Dim>
 class RigidKick final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"rigid_kick", Stage::solid_kick, "Eqs. 94, 95, 100, 101",
-            "velocity, turning and place of rigid solids at the end of their step; bound of their "
-            "clock",
-            false};
+    return {
+        "rigid_kick", Stage::solid_kick, "Eqs. 94, 95, 100, 101",
+        "velocity, turning and position of rigid solids at the end of their step; bound of their "
+        "clock",
+        false};
   }
   static Binding<Dim> bind(const World<Dim>& world) { return bind_solids<RigidKick>(world, true); }
 

@@ -8,14 +8,14 @@
 namespace sphgeo {
 namespace {
 
-/// Velocity and place at the end of the acoustic step (Eqs. 97, 98), and the step bounds of the
+/// Velocity and position at the end of the acoustic step (Eqs. 97, 98), and the step bounds of the
 /// soil (Eqs. 91, 92). A fixed skeleton stays, a prescribed one follows the velocity of its body.
 template <int Dim>
 class SoilKick final : public Effect<Dim> {
  public:
   static EffectInfo info() {
     return {"soil_kick", Stage::kick, "Eqs. 91, 92, 97, 98",
-            "velocity and place of soil at the end of the step; bounds of both clocks", false};
+            "velocity and position of soil at the end of the step; bounds of both clocks", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};

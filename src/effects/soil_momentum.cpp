@@ -6,7 +6,7 @@ namespace {
 
 /// Stress between two soil particles by the Riemann flux (Eqs. 49 to 54).
 ///
-/// Eq. 49 prints sigma_i + sigma_j. Here each stress comes with the correction B of its particle,
+/// Eq. 49 has sigma_i + sigma_j. Here each stress comes with the correction B of its particle,
 /// by which Eq. 55 is made exact for linear velocities: only then does the work of these forces
 /// equal that of the stress on the velocity gradient, pair by pair. With the correction in Eq. 55
 /// alone, energy grows without bound near every surface.

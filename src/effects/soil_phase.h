@@ -37,7 +37,7 @@ Kernel<Dim> soil_kernel(const ParticleSet<Dim>& soil) {
 /// Whether passes read the parameters of single particles: there are unlike soils, or walls.
 template <int Dim>
 bool soil_parameters_used(const World<Dim>& world) {
-  return !world.parameters().soil.uniform || world.find("walls") || world.find("skin");
+  return !world.parameters().soil.uniform || world.find("walls") || world.find("interface");
 }
 
 /// What a pass sees of a soil particle with all its records, and of one among its like.

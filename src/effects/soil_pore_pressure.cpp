@@ -23,7 +23,7 @@ struct WaterMean {
   }
 };
 
-/// Pore pressure at the soil (Eq. 47), for whoever looks at it: the force on the soil does not need
+/// Pore pressure at the soil (Eq. 47), for observers: the force on the soil does not need
 /// it (see PorePressure).
 template <int Dim>
 class SoilPorePressure final : public Effect<Dim> {

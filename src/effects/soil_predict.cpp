@@ -5,13 +5,13 @@
 namespace sphgeo {
 namespace {
 
-/// Volume fraction, place and volume at the middle of the acoustic step (Eq. 96).
+/// Volume fraction, position and volume at the middle of the acoustic step (Eq. 96).
 template <int Dim>
 class SoilPredict final : public Effect<Dim> {
  public:
   static EffectInfo info() {
     return {"soil_predict", Stage::predict, "Eqs. 1, 96",
-            "volume fraction, place and volume of soil at the middle of the step", false};
+            "volume fraction, position and volume of soil at the middle of the step", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};

@@ -167,7 +167,7 @@ class SoilReinitialization final : public Effect<Dim> {
     if constexpr (Transport) shift(world);
   }
 
-  // Eq. 87 with the sign that leads away from densely packed places. Particles whose kernel reaches
+  // Eq. 87 with the sign that leads away from dense regions. Particles whose kernel reaches
   // the free surface stay: there the sum measures the cut kernel, not the arrangement (as for
   // water).
   void shift(World<Dim>& world) {

@@ -7,7 +7,7 @@ namespace {
 /// Velocity of the soil at the water (Eq. 57), and that of the mixture, n^w v^w + n^s v^s, packed
 /// in place of that of the water: the divergence of Eq. 58 is taken of it.
 ///
-/// Eq. 58 prints the bracket n_i v_i - n_j v_j - (1 - n_i) v_i^s, which does not vanish when water
+/// Eq. 58 has the bracket n_i v_i - n_j v_j - (1 - n_i) v_i^s, which does not vanish when water
 /// and soil move together. Eq. 23 asks for the divergence of n^w v^w + n^s v^s, whose difference
 /// between two water particles does.
 template <int Dim>

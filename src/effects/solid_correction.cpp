@@ -23,8 +23,8 @@ struct MomentSum {
   }
 };
 
-/// What follows from the places of solids at rest, once: the correction B0 of the gradient (Eq. 66)
-/// and the places in the records.
+/// What follows from the positions of solids at rest, once: the correction B0 of the gradient (Eq.
+/// 66) and the positions in the records.
 template <int Dim>
 class SolidCorrection final : public Effect<Dim> {
  public:

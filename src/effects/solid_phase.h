@@ -1,6 +1,6 @@
 #pragma once
 // What the effects of solids share: parameters of their bodies, needs, the deformation of
-// the places at hand.
+// the current positions.
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -72,8 +72,8 @@ Binding<Dim> bind_solids(const World<Dim>& world, bool rigid = false) {
   return binding;
 }
 
-/// Names what a set of solids needs for Deformation: the places at rest, and a displacement of the
-/// effect's own.
+/// Names what a set of solids needs for Deformation: the positions at rest, and a displacement of
+/// the effect's own.
 template <int Dim>
 void need_deformation(Needs& needs, const std::string& set) {
   using Displacement = packed::Displacement<Dim>;
@@ -133,23 +133,24 @@ Mat<Dim> nearest_rotation(const Mat<Dim>& a) {
   return svd.matrixU() * flip * svd.matrixV().transpose();
 }
 
-/// The deformation gradient of all particles of a set at their places. Eq. 67 is linear in the
-/// velocities, and so is its integral in the places: with B0, F_i = sum_j (x_j - x_i) (x) grad W V
-/// B0, and no error adds up. The pair sums see w = R^T (x - c) - (X - C), what a body has moved
+/// The deformation gradient of all particles of a set at their positions. Eq. 67 is linear in the
+/// velocities, and so is its integral in the positions: with B0, F_i = sum_j (x_j - x_i) (x) grad W
+/// V B0, and no error adds up. The pair sums see w = R^T (x - c) - (X - C), what a body has moved
 /// beyond its rigid motion (R, c): as F = R (I + sum (w_j - w_i) (x) grad W V B0) holds for any R
-/// and c, single precision costs digits of the strain and not of the travelled way.
+/// and c, single precision costs digits of the strain and not of the displacement.
 template <int Dim>
 class Deformation {
  public:
   explicit Deformation(std::string set) : set_(std::move(set)) {}
 
-  /// Frames of the bodies at the places at hand, from a few particles of each: near is near enough.
+  /// Frames of the bodies in the current configuration, from a few particles of each: an estimate
+  /// suffices.
   void find_frames(const World<Dim>& world);
   const BodyFrame<Dim>& frame(std::int32_t part) const {
     return frames_[static_cast<std::size_t>(part)];
   }
 
-  /// Writes w of particle i at the place x.
+  /// Writes w of particle i at the position x.
   template <class T>
   void pack(const RecordPacking<packed::Displacement<Dim>, T>& records, Index i, const Vec<Dim>& x,
             const Vec<Dim>& reference, std::int32_t part) const {

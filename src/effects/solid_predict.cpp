@@ -8,14 +8,15 @@
 namespace sphgeo {
 namespace {
 
-/// Elastic solids at the middle of their step: places, deformation (Eqs. 67, 99) and stress (Eqs.
-/// 36 to 40). Clamped regions are where their motion takes them.
+/// Elastic solids at the middle of their step: positions, deformation (Eqs. 67, 99) and stress
+/// (Eqs. 36 to 40). Clamped regions are where their motion takes them.
 template <int Dim>
 class SolidPredict final : public Effect<Dim> {
  public:
   static EffectInfo info() {
     return {"solid_predict", Stage::solid_predict, "Eqs. 36-40, 67, 99",
-            "places, deformation and stress of elastic solids at the middle of their step", false};
+            "positions, deformation and stress of elastic solids at the middle of their step",
+            false};
   }
   static Binding<Dim> bind(const World<Dim>& world) { return bind_solids<SolidPredict>(world); }
 

@@ -4,8 +4,8 @@
 namespace sphgeo {
 namespace {
 
-/// Stress, strain energy, volume and density of elastic solids at the places at hand, for whoever
-/// looks at them.
+/// Stress, strain energy, volume and density of elastic solids in the current configuration, for
+/// observers.
 template <int Dim>
 class SolidState final : public Effect<Dim> {
  public:

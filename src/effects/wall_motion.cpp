@@ -11,8 +11,8 @@
 namespace sphgeo {
 namespace {
 
-/// A step of what a piston moves beside that to take up waves (see wave_absorption.cpp): zero for
-/// every other wall.
+/// Displacement, velocity and acceleration that active wave absorption adds (wave_absorption.cpp):
+/// zero for every other wall.
 struct Extra {
   Vec3 shift = Vec3::Zero(), velocity = Vec3::Zero(),
        acceleration = Vec3::Zero();  // at the end, the middle and the middle of the step
@@ -29,8 +29,8 @@ struct Extra {
   }
 };
 
-/// Walls whose motion the deck prescribes: place at the end of the step, velocity and acceleration
-/// at its middle.
+/// Walls whose motion the deck prescribes: position at the end of the step, velocity and
+/// acceleration at its middle.
 template <int Dim>
 class WallMotion final : public Effect<Dim> {
  public:

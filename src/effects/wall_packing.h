@@ -1,12 +1,13 @@
 #pragma once
-// Packed records of walls and of the interface particles of solids (the sets "walls" and "skin").
+// Packed records of walls and of the interface particles of solids (the sets "walls" and
+// "interface").
 
 #include "sph/record_type.h"
 
 namespace sphgeo::packed {
 
-/// Kept by wall_state and skin_state; wall_motion and skin_follow bring it to the end of the
-/// acoustic step.
+/// Kept by wall_state and interface_state; wall_motion and interface_follow bring it to the end of
+/// the acoustic step.
 template <int Dim>
 struct Wall : RecordType<Dim, Position<Dim>> {
   static constexpr RecordField<Wall, 3> volume{};         ///< V, m^Dim

@@ -30,22 +30,22 @@ void need_wall_records(Needs& needs, const std::string& set) {
 
 /// One-sided Riemann problem between a water particle and a wall particle.
 ///
-/// Dummy pressure. Eq. 73 prints p + rho max[0, (g - a).n (r.n)] with n outward; that is zero under
-/// still water, so the sign of the bracket is turned: it rises when the wall pushes on the water.
-/// The print's zero leaves a lid, or the lower side of a body, the pressure of the water below it:
-/// half a spacing of hydrostatic pressure too much, in the buoyancy of every body. So there it
-/// falls as it does at rest, but no wall draws: neither below zero nor, by moving away, below that
-/// at rest. Along the wall the print keeps the pressure constant, which removes the wall's half of
-/// the vertical pressure gradient at a side wall, and still water would sink along it. There the
-/// momentum equation of the water itself, grad p = rho (g - dv/dt), carries the pressure along the
-/// wall: hydrostatic at rest, constant in free fall. dv/dt is that of the last acoustic step. Both
-/// are divided by the kernel's lattice moment (0.995 in 2D for h = 1.8 dp): in still water the
-/// pressure gradient is as much steeper than rho g as the sum over the water is weaker, and the
-/// wall has to follow it.
+/// Dummy pressure. Eq. 73 in the paper is p + rho max[0, (g - a).n (r.n)] with n outward; that is
+/// zero under still water, so the sign of the bracket is turned: it rises when the wall pushes on
+/// the water. The paper's zero leaves a lid, or the lower side of a body, the pressure of the water
+/// below it: half a spacing of hydrostatic pressure too much, in the buoyancy of every body. So
+/// there it falls as it does at rest, but no wall draws: neither below zero nor, by moving away,
+/// below that at rest. Along the wall the paper keeps the pressure constant, which removes the
+/// wall's half of the vertical pressure gradient at a side wall, and still water would sink along
+/// it. There the momentum equation of the water itself, grad p = rho (g - dv/dt), carries the
+/// pressure along the wall: hydrostatic at rest, constant in free fall. dv/dt is that of the last
+/// acoustic step. Both are divided by the kernel's lattice moment (0.995 in 2D for h = 1.8 dp): in
+/// still water the pressure gradient is as much steeper than rho g as the sum over the water is
+/// weaker, and the wall has to follow it.
 ///
-/// The density dissipation sees what of the push is beyond gravity, under a lid as over a floor.
-/// Anything left at rest would be a source of water: in pores, where drag holds it, a lasting flow
-/// away from every surface that looks down.
+/// The density dissipation acts on the part of the pressure force beyond gravity, under a lid as
+/// over a floor. Anything left at rest would be a source of water: in pores, where drag holds it, a
+/// lasting flow away from every surface that faces down.
 ///
 /// Solids. Eq. 95 takes their mean acceleration for the push. For a plate lighter than the water
 /// that its kernel reaches, what one step does with it is undone by more than as much in the next,

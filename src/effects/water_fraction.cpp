@@ -102,7 +102,7 @@ class WaterFraction final : public Effect<Dim> {
       : walls_(wall_sets(world)), deformable_(world.parameters().soil.deformable) {}
 
   std::string acts_on() const override { return "water near soil"; }
-  // The places are those of before the transport shift, whose target volumes need this fraction:
+  // The positions are those of before the transport shift, whose target volumes need this fraction:
   // they are not named here.
   Needs needs() const override {
     Needs n{{{"water", &fields::water_fraction, Access::write},
@@ -159,7 +159,7 @@ class WaterFraction final : public Effect<Dim> {
     return ordered_sum(water_->size(), [&](Index i) { return n[i] <= floor_ ? 1.0 : 0.0; });
   }
 
-  // Places and weights that pairs of water and soil keep for the whole advection step.
+  // Positions and weights that pairs of water and soil keep for the whole advection step.
   template <class T>
   void pack_pairs(World<Dim>& world) {
     const auto soil = write_records<Pore, T>(world, "soil");
@@ -168,7 +168,8 @@ class WaterFraction final : public Effect<Dim> {
     const auto& part = soil_->tag(fields::part);
     const auto& m = soil_->scalar(fields::mass);
     const auto& grains = water_->scalar(fields::soil_sum);
-    const auto soil_at = world.arranged_places("soil"), water_at = world.arranged_places("water");
+    const auto soil_at = world.arranged_positions("soil"),
+               water_at = world.arranged_positions("water");
     parallel_for(soil_->size(), [&](Index k) {
       soil.set_position(k, soil_at[static_cast<std::size_t>(k)]);
       soil[k].put(Pore::weight, m[k] / parts[part[k]].grain_density);

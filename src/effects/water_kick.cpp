@@ -9,14 +9,14 @@
 namespace sphgeo {
 namespace {
 
-/// Velocity and place at the end of the acoustic step (Eqs. 97, 98), and the step bounds of the
+/// Velocity and position at the end of the acoustic step (Eqs. 97, 98), and the step bounds of the
 /// water (Eqs. 91, 92).
 template <int Dim>
 class WaterKick final : public Effect<Dim> {
  public:
   static EffectInfo info() {
     return {"water_kick", Stage::kick, "Eqs. 91, 92, 97, 98",
-            "velocity and place at the end of the step; bounds of both clocks", false};
+            "velocity and position at the end of the step; bounds of both clocks", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};

@@ -32,10 +32,10 @@ void need_volume_share(const World<Dim>& world, Needs& needs) {
 
 /// What the pair sums of gradients between water particles are multiplied by, as one factor for
 /// each side of a pair: 1 in clear water. In soil the particles are spread wider than the kernel
-/// was made for, and their sums see a linear field by several percent too weak. One factor a side
-/// leaves action and reaction equal. Walls have that of the water particle they meet, so that a
-/// constant pressure pushes nobody who lies evenly between water and wall. Null where there is no
-/// water in soil.
+/// was made for, and their sums give the gradient of a linear field several percent too small. One
+/// factor a side leaves action and reaction equal. Walls have that of the water particle they meet,
+/// so that a constant pressure does not push a particle that lies evenly between water and wall.
+/// Null where there is no water in soil.
 template <int Dim>
 const Field<double>* gradient_scale(const World<Dim>& world) {
   return volume_follows_porosity(world) ? &world.set("water").scalar(fields::gradient_scale)

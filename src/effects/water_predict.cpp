@@ -5,14 +5,14 @@
 namespace sphgeo {
 namespace {
 
-/// Density and place at the middle of the acoustic step, pressure and volume there (Eqs. 26, 27,
+/// Density and position at the middle of the acoustic step, pressure and volume there (Eqs. 26, 27,
 /// 96).
 template <int Dim>
 class WaterPredict final : public Effect<Dim> {
  public:
   static EffectInfo info() {
     return {"water_predict", Stage::predict, "Eqs. 26, 27, 96",
-            "density, place, pressure and volume at the middle of the step", false};
+            "density, position, pressure and volume at the middle of the step", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
@@ -65,8 +65,9 @@ class WaterPredict final : public Effect<Dim> {
         rho[i] += half * rate[i];
         x[i] += half * v[i];
         p[i] = c2 * (rho[i] - w.density);
-        // Drops that part bear no tension: it would hold a particle back over the whole advection
-        // step, until pairs are found anew, and let it go with more energy than it had.
+        // Negative pressure is cut off between drops that separate: it would hold a particle back
+        // over the whole advection step, until pairs are found anew, and let it go with more energy
+        // than it had.
         if (surface[i] == spray) p[i] = std::max(p[i], 0.0);
         volume[i] = m[i] / (share ? (*share)[i] * rho[i] : rho[i]);
         const auto record = records[i];

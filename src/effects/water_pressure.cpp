@@ -5,7 +5,7 @@
 namespace sphgeo {
 namespace {
 
-/// Pressure and volume of the state at hand, for whoever looks at it between two steps.
+/// Pressure and volume of the current state, for observers between two steps.
 template <int Dim>
 class WaterPressure final : public Effect<Dim> {
  public:

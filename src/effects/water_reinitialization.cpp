@@ -97,13 +97,13 @@ struct Arrangement {
 ///
 /// In soil every sum is taken with the target volumes m / (rho0 n^w) of Eq. 88. So the density,
 /// too, follows from how far the particles are from the spacing that the porosity asks for. The
-/// print's sum of m W, divided by the particle's own n^w, compares a fraction that was smoothed
+/// paper's sum of m W, divided by the particle's own n^w, compares a fraction that was smoothed
 /// twice with one that was smoothed once: at a step of porosity they differ by several percent,
 /// which the equation of state would answer with pressures of several dynamic heads. And in pores
 /// the sum is only followed as fast as the water can flow there (see pore_share).
 ///
 /// The gradient of the shift weighs every particle as the pressure force does, with the scale of
-/// gradients: so the places that the shift leads to are those where a constant pressure has no
+/// gradients: so the positions that the shift leads to are those where a constant pressure has no
 /// resultant. Where the drag keeps particles from following the sum, it takes the volumes m / (rho
 /// n^w) of now. With those at rest (Eq. 88) it works against the compression of water at depth,
 /// without end: particles that stay where they are then have a velocity against it, and the drag of
@@ -313,7 +313,7 @@ class WaterReinitialization final : public Effect<Dim> {
     return s.gradient - normal.dot(s.gradient) * normal;
   }
 
-  // Eq. 87 with the sign that leads away from densely packed places. Wherever the kernel reaches
+  // Eq. 87 with the sign that leads away from dense regions. Wherever the kernel reaches
   // the free surface, its truncation looks like a rarefaction, much stronger than any real one. Eq.
   // 87 keeps the part along the surface; as the normal is never exact, what is left stirs still
   // water (kinetic energy three times as high, 15 spacings deep in 3D), so the default leaves these
@@ -349,8 +349,9 @@ class WaterReinitialization final : public Effect<Dim> {
                                     // The list leaves the particle itself out.
                                     const double weight = near.share + (surface ? 1.0 : 0.0);
                                     const Vec<Dim> mean = to_vec(near.normal) + normal;
-                                    // Surfaces that face each other, as of a thin film or a lonely
-                                    // particle, leave no direction along which anything may move.
+                                    // Surfaces that face each other, as of a thin film or an
+                                    // isolated particle, leave no direction along which anything
+                                    // may move.
                                     const double length = mean.norm();
                                     if (length < 0.5 * weight) return;
                                     move -= (mean.dot(move) / (length * length)) * mean;

@@ -10,7 +10,7 @@
 
 namespace sphgeo {
 
-inline StateFileKind checkpoint_kind() { return {"checkpoint 3", "checkpoint"}; }
+inline StateFileKind checkpoint_kind() { return {"checkpoint 4", "checkpoint"}; }
 
 /// Collects the state of a run.
 class CheckpointWriter final : public StateFileWriter {

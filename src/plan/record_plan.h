@@ -1,5 +1,5 @@
 #pragma once
-// What the planner knows of packed records: who hands which to whom.
+// What the planner knows of packed records: which effect writes and which reads them.
 
 #include <string>
 #include <vector>

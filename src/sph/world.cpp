@@ -69,7 +69,7 @@ void World<Dim>::rearrange() {
   neighborhoods_.build_lists(sets_);
 }
 
-// Solids are sorted once; the grid is that of the places they are at.
+// Solids are sorted once; the grid is that of the positions they are at.
 template <int Dim>
 void World<Dim>::arrange_solids(ParticleSet<Dim>& set) {
   if (!neighborhoods_.has_grid(set.name())) {
@@ -79,7 +79,7 @@ void World<Dim>::arrange_solids(ParticleSet<Dim>& set) {
   neighborhoods_.place(set, sets_.reach());
 }
 
-// By the cells of the places `at`, then by id; makes room in the records.
+// By the cells of the positions `at`, then by id; makes room in the records.
 template <int Dim>
 void World<Dim>::sort(ParticleSet<Dim>& set, std::span<const Vec<Dim>> at) {
   neighborhoods_.sort(set, at, sets_.reach());
@@ -155,7 +155,7 @@ void World<Dim>::load_arrangement(const StateSource& source) {
       if (packed(s->name())) pack_positions(*s);
       continue;
     }
-    // They are sorted: nobody changes place.
+    // They are sorted: the order stays.
     sort(*s, neighborhoods_.load_positions(source, s->name(), s->size()));
     if (packed(s->name())) load_packed(source, s->name());
   }

@@ -29,23 +29,23 @@ class World {
   /// What the deck says to the effects; complete when the scene is built.
   const Parameters& parameters() const { return *parameters_; }
   const Vec<Dim>& gravity() const { return gravity_; }  ///< m/s2
-  /// Gravity and the deck's body force at a place, now, m/s2.
+  /// Gravity and the deck's body force at a position, now, m/s2.
   Vec<Dim> body_acceleration(const Vec<Dim>& at) const;
   Clock clock;
 
-  /// Adds a set. `moves` is false for sets whose particles never change place.
+  /// Adds a set. `moves` is false for sets whose particles never move.
   ParticleSet<Dim>& add_set(std::string name, std::string phase, double spacing, double h,
                             bool moves) {
     return sets_.add(std::move(name), std::move(phase), spacing, h, moves);
   }
   /// Adds a set of solids: it moves, but keeps its particles, their order and their neighbors at
-  /// rest. No list but the reference list pairs them: what touches them is the set "skin".
+  /// rest. No list but the reference list pairs them: what touches them is the set "interface".
   ParticleSet<Dim>& add_solids(std::string name, double spacing, double h);
   /// Throws std::logic_error when there is none of that name.
   ParticleSet<Dim>& set(const std::string& name) const { return sets_.at(name); }
   ParticleSet<Dim>* find(const std::string& name) const { return sets_.find(name); }
   const std::vector<std::unique_ptr<ParticleSet<Dim>>>& sets() const { return sets_.all(); }
-  /// Whether the particles of a set change place.
+  /// Whether the particles of a set move.
   bool moves(const std::string& set) const { return sets_.moves(set); }
   /// Sets the box outside of which particles are lost and fits the fixed-point frame to it.
   void set_domain(const Vec<Dim>& lo, const Vec<Dim>& hi);
@@ -67,8 +67,8 @@ class World {
     return neighborhoods_.reference_weights(set);
   }
   const CellGrid<Dim>& grid(const std::string& set) const { return neighborhoods_.grid(set); }
-  /// The places of a set at the last rearrangement, as its grid holds them.
-  std::vector<Vec<Dim>> arranged_places(const std::string& set) const {
+  /// The positions of a set at the last rearrangement, as its grid holds them.
+  std::vector<Vec<Dim>> arranged_positions(const std::string& set) const {
     return neighborhoods_.arranged_positions(set);
   }
 
@@ -86,7 +86,7 @@ class World {
   const RecordStore<Dim>& records() const { return records_; }
 
   /// Line 28 of Algorithm 2: removes lost particles, sorts by cell, rebuilds grids and lists and
-  /// the places in the records.
+  /// the positions in the records.
   void rearrange();
   /// Number of rearrangements so far: what was kept of single particles is void when it changes.
   long arrangement() const { return arrangement_; }
@@ -95,7 +95,7 @@ class World {
   /// What has crossed a boundary; the account is made at the first call.
   Exchanged<Dim>& exchanged(const std::string& boundary) { return ledger_[boundary]; }
   const std::map<std::string, Exchanged<Dim>>& exchanged() const { return ledger_.accounts(); }
-  /// A wave maker that takes up waves; made at the first call.
+  /// State of a wave maker with active wave absorption; made at the first call.
   PistonState& piston(const std::string& boundary) { return pistons_[boundary]; }
 
   /// Memory of fields, records, grids and lists, bytes.
@@ -107,9 +107,9 @@ class World {
   void save(StateSink& sink) const;
   void load(const StateSource& source);
 
-  /// The same within an advection step, after save() and load(): the places at the last
+  /// The same within an advection step, after save() and load(): the positions at the last
   /// rearrangement, which lists and frozen pair geometry rest on. Loading rebuilds grids, lists and
-  /// places in the records from them.
+  /// positions in the records from them.
   void save_arrangement(StateSink& sink) const;
   void load_arrangement(const StateSource& source);
 

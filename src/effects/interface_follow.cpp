@@ -1,60 +1,60 @@
 #include "core/parallel.h"
+#include "effects/interface.h"
 #include "effects/pack_walls.h"
-#include "effects/skin.h"
 
 namespace sphgeo {
 namespace {
 
-/// Takes the skin where its solids are at the end of the acoustic step.
+/// Takes the interface where its solids are at the end of the acoustic step.
 ///
 /// Eq. 95 gives water and soil the velocity averaged over the steps of the solids. Their own
 /// density follows from velocities at both ends of the step (Eqs. 96 to 98); with an average beside
 /// them the surface is half a step late, and what is lighter than the water around it is thrown
 /// about by that (see light_solids.h).
 template <int Dim>
-class SkinFollow final : public Effect<Dim> {
+class InterfaceFollow final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"skin_follow", Stage::solid_finish, "Eq. 95",
-            "place and velocity of the surface of solids", false};
+    return {"interface_follow", Stage::solid_finish, "Eq. 95",
+            "position and velocity of the surface of solids", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    if (!world.find("skin")) return {"no solid can meet anything"};
-    return {std::make_unique<SkinFollow>(world), "solids can meet something"};
+    if (!world.find("interface")) return {"no solid can meet anything"};
+    return {std::make_unique<InterfaceFollow>(world), "solids can meet something"};
   }
 
-  explicit SkinFollow(const World<Dim>& world)
+  explicit InterfaceFollow(const World<Dim>& world)
       : solids_(solid_sets(world)),
         seen_(world.find("water") || world.find("soil")),
         current_geometry_(!world.frozen_geometry()) {}
 
-  std::string acts_on() const override { return "skin"; }
+  std::string acts_on() const override { return "interface"; }
   Needs needs() const override {
-    Needs n{
-        {{"skin", &fields::position, Access::update}, {"skin", &fields::velocity, Access::update}},
-        {}};
+    Needs n{{{"interface", &fields::position, Access::update},
+             {"interface", &fields::velocity, Access::update}},
+            {}};
     for (const std::string& set : solids_)
       for (const FieldSpec* f : {&fields::position, &fields::velocity})
         n.fields.push_back({set, f, Access::read});
     if (!seen_) return n;
-    need_wall_packing<Dim>(n, "skin", Access::write);
-    if (current_geometry_) n.record<Position<Dim>>("skin", Access::update);
+    need_wall_packing<Dim>(n, "interface", Access::write);
+    if (current_geometry_) n.record<Position<Dim>>("interface", Access::update);
     return n;
   }
 
   void apply(World<Dim>& world) override {
     map_.update(world);
-    ParticleSet<Dim>& skin = world.set("skin");
-    auto& x = skin.vector(fields::position);
-    auto& v = skin.vector(fields::velocity);
-    parallel_for(skin.size(), [&](Index k) {
+    ParticleSet<Dim>& interface = world.set("interface");
+    auto& x = interface.vector(fields::position);
+    auto& v = interface.vector(fields::velocity);
+    parallel_for(interface.size(), [&](Index k) {
       const auto& [of, i] = map_.at(k);
       x[k] = of->position[i];
       v[k] = of->velocity[i];
     });
     if (!seen_) return;
-    pack_walls(world, "skin");
-    if (current_geometry_) world.pack_positions(skin);
+    pack_walls(world, "interface");
+    if (current_geometry_) world.pack_positions(interface);
   }
   std::size_t bytes() const override { return map_.bytes(); }
 
@@ -62,10 +62,10 @@ class SkinFollow final : public Effect<Dim> {
   std::vector<std::string> solids_;
   bool seen_;  // by water or soil
   bool current_geometry_;
-  SkinMap<Dim> map_;
+  InterfaceMap<Dim> map_;
 };
 
-const RegisterEffect<SkinFollow> registered_skin_follow;
+const RegisterEffect<InterfaceFollow> registered_interface_follow;
 
 }  // namespace
 }  // namespace sphgeo

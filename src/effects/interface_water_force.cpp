@@ -1,4 +1,4 @@
-#include "effects/skin.h"
+#include "effects/interface.h"
 #include "effects/water_wall_force.h"
 
 namespace sphgeo {
@@ -7,26 +7,26 @@ namespace {
 /// Force of water on solids: the reaction to what water_wall_force does, by the same pair function
 /// at the same moment.
 template <int Dim>
-class SkinWaterForce final : public Effect<Dim> {
+class InterfaceWaterForce final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"skin_water_force", Stage::force, "Eqs. 75-77, 95",
+    return {"interface_water_force", Stage::force, "Eqs. 75-77, 95",
             "pressure and friction of water on solids", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    if (!world.find("skin") || !world.find("water"))
+    if (!world.find("interface") || !world.find("water"))
       return {"there are no solids, or there is no water"};
-    return {std::make_unique<SkinWaterForce>(), "there are solids and water"};
+    return {std::make_unique<InterfaceWaterForce>(), "there are solids and water"};
   }
 
   std::string acts_on() const override { return "solids near water"; }
   Needs needs() const override {
-    Needs n{{{"skin", &fields::water_force, Access::write}},
-            {{"skin", "water"}, {"water", "skin"}}};
+    Needs n{{{"interface", &fields::water_force, Access::write}},
+            {{"interface", "water"}, {"water", "interface"}}};
     need_pressure_gradient<Dim>(n);
     n.record<Position<Dim>>("water", Access::read);
     n.record<packed::WaterState<Dim>>("water", Access::read);
-    need_wall_records<Dim>(n, "skin");
+    need_wall_records<Dim>(n, "interface");
     return n;
   }
 
@@ -36,10 +36,10 @@ class SkinWaterForce final : public Effect<Dim> {
     using Pair = WaterForceOnWall<Dim, packed::WaterState>;
     const Pair pair{
         WallPair<Dim>(world.parameters().water, water.smoothing_length(), water.spacing())};
-    auto& force = world.set("skin").vector(fields::water_force);
+    auto& force = world.set("interface").vector(fields::water_force);
     const Field<double>* scale = gradient_scale(world);
     parallel_for(force.size(), [&](Index i) { force[i].setZero(); });
-    const NeighborList& around = world.list("water", "skin");
+    const NeighborList& around = world.list("water", "interface");
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       const auto gradient = write_records<Gradient, T>(world, "water");
@@ -49,14 +49,14 @@ class SkinWaterForce final : public Effect<Dim> {
         for (const std::uint32_t i : block.targets)
           gradient[i].put(Gradient::reaction_scale, scale ? (*scale)[i] : 1.0);
       gather<Pair::template Sums>(
-          world.list("skin", "water"), wall_records<T>(world, "skin"),
+          world.list("interface", "water"), wall_records<T>(world, "interface"),
           with<T>(read_records<packed::WaterState<Dim>, T>(world, "water"), gradient), pair,
           [&](Index i, const auto& sum) { force[i] = to_vec(sum.force); });
     });
   }
 };
 
-const RegisterEffect<SkinWaterForce> registered_skin_water_force;
+const RegisterEffect<InterfaceWaterForce> registered_interface_water_force;
 
 }  // namespace
 }  // namespace sphgeo
