@@ -20,7 +20,22 @@ namespace {
 
 using namespace sphgeo;
 
-constexpr int V = 3, v = 4, p = 7;  // slots of a water record
+struct Water : RecordType<3> {
+  static constexpr RecordField<Water, 0, 3> position{};
+  static constexpr RecordField<Water, 3> volume{};
+  static constexpr RecordField<Water, 4, 3> velocity{};
+  static constexpr RecordField<Water, 7> pressure{};
+  static constexpr RecordSpec spec{"water",
+                                   0,
+                                   "",
+                                   {{{"position", position},
+                                     {"volume", volume},
+                                     {"velocity", velocity},
+                                     {"pressure", pressure}}}};
+};
+constexpr auto V = Water::volume;
+constexpr auto v = Water::velocity;
+constexpr auto p = Water::pressure;
 
 struct Momentum {
   Kernel<3> kernel;
@@ -31,7 +46,7 @@ struct Momentum {
     LaneVec<3, T> force{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<3, T>& i, const Record<3, T>& j,
+  void operator()(Sums<T>& sum, const Record<T, Water>& i, const Record<T, Water>& j,
                   const LaneVec<3, T>& r, const T& r2) const {
     const T dW_r = kernel.dw_over_r(r2) * j[V];
     const LaneVec<3, T> v_ij = i.vec(v) - j.vec(v);
@@ -54,7 +69,7 @@ struct Density {
     T rate{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<3, T>& i, const Record<3, T>& j,
+  void operator()(Sums<T>& sum, const Record<T, Water>& i, const Record<T, Water>& j,
                   const LaneVec<3, T>& r, const T& r2) const {
     const T dW_r = kernel.dw_over_r(r2) * j[V];
     const T divergence = dot(i.vec(v) - j.vec(v), r);
@@ -108,17 +123,18 @@ template <class T>
 void time_steps(const char* name, const NeighborList& list, const std::vector<Vec<3>>& r,
                 const FixedPoint<3>& frame, double h, int repeats) {
   const auto n = static_cast<Index>(r.size());
-  Records<3, T> a(n, frame), b(n, frame);
+  Records<3, T> in_a(n, frame), in_b(n, frame);
+  const RecordPacking<Water, T> a(in_a), b(in_b);
   std::vector<Vec<3>> velocity(r.size());
   std::vector<double> density(r.size(), 1000.0);
   const Kernel<3> kernel(h);
-  const auto pack = [&](Records<3, T>& to, Index i) {
+  const auto pack = [&](const RecordPacking<Water, T>& to, Index i) {
     const auto k = static_cast<std::size_t>(i);
-    T* record = to[i];
+    const auto record = to[i];
     to.set_position(i, r[k]);
-    record[V] = static_cast<T>(1e-6 * 1000.0 / density[k]);
-    for (int d = 0; d < 3; ++d) record[v + d] = static_cast<T>(velocity[k][d]);
-    record[p] = static_cast<T>(400.0 * (density[k] - 1000.0));
+    record.put(V, 1e-6 * 1000.0 / density[k]);
+    record.put(v, velocity[k]);
+    record.put(p, 400.0 * (density[k] - 1000.0));
   };
   for (Index i = 0; i < n; ++i) {
     for (int d = 0; d < 3; ++d)

@@ -51,8 +51,30 @@ nlohmann::ordered_json plan_json(const auto& world, const auto& plan) {
                              {"name", name},
                              {"unit", field->spec().unit.symbol},
                              {"lifetime", lifetimes[static_cast<int>(field->spec().lifetime)]}});
+  j["records"] = nlohmann::ordered_json::array();
+  for (const RecordRow& r : record_rows(plan.records())) {
+    nlohmann::ordered_json names = nlohmann::ordered_json::array();
+    for (const RecordFieldSpec& f : r.record->fields)
+      if (f.name) names.push_back(f.name);
+    j["records"].push_back({{"set", r.set},
+                            {"name", r.record->name},
+                            {"what", r.record->sentence},
+                            {"fields", names},
+                            {"array", r.record->array},
+                            {"array_bytes", world.records().bytes(r.set, r.record->array)},
+                            {"written_by", r.written_by},
+                            {"read_by", r.read_by},
+                            {"used_up_by", r.used_up_by},
+                            {"shares_with", r.shares_with}});
+  }
   j["memory_bytes"] = world.bytes() + plan.bytes();
   return j;
+}
+
+std::string joined(const nlohmann::ordered_json& names) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name.get<std::string>();
+  return text;
 }
 
 void print_plan(const nlohmann::ordered_json& j) {
@@ -79,7 +101,18 @@ void print_plan(const nlohmann::ordered_json& j) {
     std::cout << fmt::format(" {}({})", f["name"].get<std::string>(),
                              f["lifetime"].get<std::string>());
   }
-  std::cout << fmt::format("\nmemory {}\n", bytes_text(j["memory_bytes"].get<double>()));
+  std::cout << fmt::format("\npacked records\n");
+  for (const auto& r : j["records"]) {
+    std::cout << fmt::format("  {}: {} ({}), array {} of {}\n", r["set"].get<std::string>(),
+                             r["name"].get<std::string>(), joined(r["fields"]),
+                             r["array"].get<int>(), bytes_text(r["array_bytes"].get<double>()));
+    for (const auto& [key, says] :
+         {std::pair("written_by", "written by"), std::pair("read_by", "read by"),
+          std::pair("used_up_by", "packed and used up by"),
+          std::pair("shares_with", "shares numbers with")})
+      if (!r[key].empty()) std::cout << fmt::format("    {} {}\n", says, joined(r[key]));
+  }
+  std::cout << fmt::format("memory {}\n", bytes_text(j["memory_bytes"].get<double>()));
 }
 
 /// The cost of a run; with the time unless `--no-calibrate`. Advances the world.

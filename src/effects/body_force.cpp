@@ -31,8 +31,9 @@ class BodyForce final : public Effect<Dim> {
   }
   void apply(World<Dim>& world) override {
     const auto& x = world.set("water").vector(fields::position);
-    parallel_for(acceleration_->size(),
-                 [&](Index i) { (*acceleration_)[i] += world.pull(x[i]) - world.gravity(); });
+    parallel_for(acceleration_->size(), [&](Index i) {
+      (*acceleration_)[i] += world.body_acceleration(x[i]) - world.gravity();
+    });
   }
 
  private:

@@ -10,10 +10,9 @@ namespace {
 /// Moments of the kernel and of the density under it, with p = (1, r / h).
 template <int Dim>
 struct FilterPair {
+  using Filtered = packed::DensityDeviation<Dim>;
   Kernel<Dim> kernel;
   double per_h;
-  static constexpr int deviation =
-      7;  ///< slot of rho / rho0 - 1 in the first record while this pass runs
 
   template <class T>
   struct Sums {
@@ -22,16 +21,16 @@ struct FilterPair {
   };
 
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j,
+  void operator()(Sums<T>& sum, const Record<T, Filtered>&, const Record<T, Filtered>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
-    const T w = kernel.w(r2) * j[water_slot::volume];
+    const T w = kernel.w(r2) * j[Filtered::volume];
     T p[Dim + 1];
     p[0] = T(1);
     for (int k = 0; k < Dim; ++k) p[k + 1] = T(-per_h) * r[k];
     int m = 0;
     for (int a = 0; a <= Dim; ++a) {
       for (int b = a; b <= Dim; ++b) sum.moment[m++] += w * p[a] * p[b];
-      sum.density[a] += w * p[a] * j[deviation];
+      sum.density[a] += w * p[a] * j[Filtered::deviation];
     }
   }
 };
@@ -60,6 +59,8 @@ class DensityFilter final : public Effect<Dim> {
     Needs n{{{"water", &fields::mass, Access::read}, {"water", &fields::density, Access::update}},
             {{"water", "water"}}};
     n.fields.insert(n.fields.end(), volume_.fields.begin(), volume_.fields.end());
+    n.record<packed::DensityDeviation<Dim>>("water", Access::scratch);
+    n.record<Position<Dim>>("water", Access::previous);  // before particles are shifted
     return n;
   }
 
@@ -74,11 +75,12 @@ class DensityFilter final : public Effect<Dim> {
     const Field<double>* share = volume_share(world);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& records = world.records("water").template get<T>();
+      using Filtered = packed::DensityDeviation<Dim>;
+      const auto records = write_records<Filtered, T>(world, "water");
       const auto volume = [&](Index i) { return m[i] / (share ? (*share)[i] * rho[i] : rho[i]); };
       parallel_for(water_->size(), [&](Index i) {
-        records[i][water_slot::volume] = static_cast<T>(volume(i));
-        records[i][pair.deviation] = static_cast<T>(rho[i] / rho0 - 1);
+        records[i].put(Filtered::volume, volume(i));
+        records[i].put(Filtered::deviation, rho[i] / rho0 - 1);
       });
       // The pass reads densities from the records, so each may be written as it is found.
       gather<FilterPair<Dim>::template Sums>(

@@ -8,7 +8,7 @@ namespace {
 
 /// Drag between water and soil (Eqs. 29 to 31, 46, 59), after all other forces of the step.
 ///
-/// Each water particle meets the soil's mean velocity around it (Eq. 57), and hands its impulse to
+/// Each water particle meets the soil's mean velocity around it (Eq. 57), and gives its impulse to
 /// the soil particles with the weights of that mean: one coefficient for both sides, so momentum is
 /// exact. As the drag of fine soil is stiffer than any acoustic step, it is taken with the relative
 /// velocity at the end of the step. For a pair of masses m and M that reads
@@ -68,6 +68,9 @@ class Drag final : public Effect<Dim> {
       n.fields.push_back({"soil", &fields::water_acceleration, Access::add});
       n.lists.push_back({"soil", "water"});
     }
+    need_pore_pairs<Dim>(n);
+    if (moves_) n.record<Velocity>("soil", Access::scratch);
+    n.record<Force>("water", Access::scratch);
     return n;
   }
 
@@ -84,7 +87,7 @@ class Drag final : public Effect<Dim> {
       pack_soil(world, dt);
       const auto& grains = water_->scalar(fields::soil_sum);
       // drag holds the velocity of the soil until exchange() has used it.
-      gather_vectors(world, "water", "soil", [&](Index i, const Vec<Dim>& sum) {
+      gather_vectors<Velocity>(world, "water", "soil", [&](Index i, const Vec<Dim>& sum) {
         if (grains[i] > 0) drag[i] = sum / grains[i];
       });
     }
@@ -93,6 +96,9 @@ class Drag final : public Effect<Dim> {
   }
 
  private:
+  using Velocity = packed::PoreVelocity<Dim>;
+  using Force = packed::PoreForce<Dim>;
+
   // Where the other forces alone would bring the soil's velocity.
   void pack_soil(World<Dim>& world, double dt) {
     const SoilParameters& parts = world.parameters().soil;
@@ -101,9 +107,10 @@ class Drag final : public Effect<Dim> {
     const Field<Vec<Dim>>* a = deformable_ ? &soil_->vector(fields::acceleration_sum) : nullptr;
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& records = pore_records<T>(world, "soil");
+      const auto records = write_records<Velocity, T>(world, "soil");
       parallel_for(soil_->size(), [&](Index k) {
-        put_vector<Dim>(records[k], parts[part[k]].moves ? Vec<Dim>(v[k] + dt * (*a)[k]) : v[k]);
+        records[k].put(Velocity::vector,
+                       parts[part[k]].moves ? Vec<Dim>(v[k] + dt * (*a)[k]) : v[k]);
       });
     });
   }
@@ -121,7 +128,7 @@ class Drag final : public Effect<Dim> {
     auto& drag = water_->vector(fields::drag_acceleration);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& records = pore_records<T>(world, "water");
+      const auto records = write_records<Force, T>(world, "water");
       for_targets(world.list("water", "soil"), [&](Index i) {
         const Vec<Dim> ahead = v[i] + dt * a[i] - drag[i];  // d*
         const double volume = m[i] / (n[i] * rho[i]),
@@ -133,7 +140,7 @@ class Drag final : public Effect<Dim> {
             (volume * (linear[i] + quadratic[i] * share * speed) * share) * ahead;
         drag[i] = force / -m[i];
         a[i] += drag[i];
-        put_vector<Dim>(records[i], force);
+        records[i].put(Force::vector, force);
       });
     });
   }
@@ -143,7 +150,7 @@ class Drag final : public Effect<Dim> {
     const auto& part = soil_->tag(fields::part);
     auto& a = soil_->vector(fields::acceleration_sum);
     auto& by_water = soil_->vector(fields::water_acceleration);
-    gather_vectors(world, "soil", "water", [&](Index k, const Vec<Dim>& sum) {
+    gather_vectors<Force>(world, "soil", "water", [&](Index k, const Vec<Dim>& sum) {
       const Vec<Dim> push = sum / parts[part[k]].grain_density;  // omega / m
       a[k] += push;
       by_water[k] += push;

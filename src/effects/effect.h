@@ -12,18 +12,18 @@
 
 namespace sphgeo {
 
-/// The places of Algorithm 2 where effects run, in order.
+/// The stages of Algorithm 2 at which effects run, in order.
 enum class Stage {
   exchange,       ///< once per advection step, before particles are sorted: some enter, some leave
   reinitialize,   ///< once per advection step, after the neighbor lists are new (lines 11, 12)
   predict,        ///< to the middle of the acoustic step (Eq. 96)
   force,          ///< accelerations at the middle (Eqs. 59, 60)
-  kick,           ///< velocity and place at the end (Eqs. 97, 98)
+  kick,           ///< velocity and position at the end (Eqs. 97, 98)
   solid_predict,  ///< kappa times per acoustic step: solids to the middle of their own step (Eq.
                   ///< 99)
   solid_force,    ///< their accelerations there (Eqs. 65, 79)
-  solid_kick,     ///< their velocity and place at its end (Eqs. 100, 101)
-  solid_finish,   ///< once per acoustic step: what water and soil see of the solids
+  solid_kick,     ///< their velocity and position at its end (Eqs. 100, 101)
+  solid_finish,   ///< once per acoustic step: the surface of the solids as water and soil use it
   rate,           ///< rates of density with the new velocities, also of the solids (Eq. 58)
   correct,        ///< density at the end (Eq. 98)
   observe         ///< only when a probe or a frame is due
@@ -34,14 +34,11 @@ inline constexpr Stage all_stages[] = {
     Stage::solid_finish, Stage::rate,          Stage::correct,     Stage::observe};
 const char* stage_name(Stage stage);
 
-/// read: the value is needed. write: set from scratch. add: summed onto a value that another effect
-/// wrote in the same stage. update: changed in place.
-enum class Access { read, write, add, update };
-
 struct FieldUse {
   std::string set;
   const FieldSpec* field;
   Access access;
+  bool optional = false;  ///< the effect does without where no other effect computes it
 };
 
 struct ListUse {
@@ -52,6 +49,15 @@ struct Needs {
   std::vector<FieldUse> fields;
   std::vector<ListUse> lists;
   std::vector<std::string> reference_lists = {};  ///< sets of solids whose pairs at rest are walked
+  std::vector<RecordUse> records = {};
+
+  /// Names fields of record R of a set; all of them where none is given.
+  template <class R, class... F>
+  Needs& record(const std::string& set, Access access, F...) {
+    const unsigned slots = sizeof...(F) == 0 ? R::spec.slots() : (0U | ... | F::slots);
+    records.push_back({set, &R::spec, access, slots});
+    return *this;
+  }
 };
 
 /// What `check --explain`, the time table and the reference page say of an effect.

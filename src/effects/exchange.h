@@ -9,31 +9,31 @@
 
 namespace sphgeo {
 
-/// The place and velocity of a new particle.
+/// Position and velocity of a new particle.
 template <int Dim>
-struct Newcomer {
-  Vec<Dim> place, velocity;
+struct InsertedParticle {
+  Vec<Dim> position, velocity;
 };
 
 /// Appends particles of water of the density at rest under `depth_pressure` [Pa] to the set, and
-/// enters them into the book of the boundary.
+/// enters them into the flux account of the boundary.
 template <int Dim>
-void let_in(World<Dim>& world, ParticleSet<Dim>& water, const std::string& boundary,
-            const std::vector<Newcomer<Dim>>& newcomers, double pressure = 0) {
-  if (newcomers.empty()) return;
+void insert_particles(World<Dim>& world, ParticleSet<Dim>& water, const std::string& boundary,
+                      const std::vector<InsertedParticle<Dim>>& inserted, double pressure = 0) {
+  if (inserted.empty()) return;
   const double density = world.parameters().water.density, c = world.parameters().water.sound_speed;
   const double mass = density * std::pow(water.spacing(), Dim);
-  Exchanged<Dim>& book = world.exchanged(boundary);
-  const Index first = water.append(static_cast<Index>(newcomers.size()));
-  for (std::size_t k = 0; k < newcomers.size(); ++k) {
+  Exchanged<Dim>& account = world.exchanged(boundary);
+  const Index first = water.append(static_cast<Index>(inserted.size()));
+  for (std::size_t k = 0; k < inserted.size(); ++k) {
     const Index i = first + static_cast<Index>(k);
     water.tag(fields::part)[i] = -1;  // of no body
-    water.vector(fields::position)[i] = newcomers[k].place;
-    water.vector(fields::velocity)[i] = newcomers[k].velocity;
+    water.vector(fields::position)[i] = inserted[k].position;
+    water.vector(fields::velocity)[i] = inserted[k].velocity;
     water.scalar(fields::mass)[i] = mass;
     water.scalar(fields::density)[i] = density + pressure / (c * c);
-    book.entered += 1;
-    book.add(1, mass, newcomers[k].place, newcomers[k].velocity, world.gravity());
+    account.entered += 1;
+    account.add(1, mass, inserted[k].position, inserted[k].velocity, world.gravity());
   }
 }
 

@@ -7,7 +7,7 @@ namespace sphgeo {
 namespace {
 
 /// The clock of a scene in which nothing moves, such as one that only leads material points along
-/// stress paths: as fast as its probes want to look.
+/// stress paths: as fast as its probes sample.
 template <int Dim>
 class IdleClock final : public Effect<Dim> {
  public:
@@ -26,7 +26,7 @@ class IdleClock final : public Effect<Dim> {
   void limit(const World<Dim>& world, StepLimits& limits) const override {
     const double step = world.parameters().shortest_interval;
     limits.advection = std::min(limits.advection, step);
-    limits.lower_acoustic(step, "who wants to look");
+    limits.lower_acoustic(step, "probes");
   }
 };
 

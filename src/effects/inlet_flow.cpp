@@ -43,31 +43,31 @@ class InletFlow final : public Effect<Dim> {
     const Vec3 velocity = velocity_at(0.5 * (begin + now));
     const double dp = water_->spacing(),
                  speed = std::max(0.0, inlet_.direction * velocity[inlet_.across]);
-    way_ += speed * (now - begin);
-    std::vector<Newcomer<Dim>> newcomers;
-    // A layer enters when half of it has come through, so that what has entered is the way to half
-    // a layer.
-    for (; (layers_ + 0.5) * dp <= way_; ++layers_) {
+    distance_ += speed * (now - begin);
+    std::vector<InsertedParticle<Dim>> inserted;
+    // A layer enters when half of it has come through, so that what has entered is the distance to
+    // half a layer.
+    for (; (layers_ + 0.5) * dp <= distance_; ++layers_) {
       // Since it came through; no longer ago than the last step.
       const double ago =
-          speed > 0 ? std::min((way_ - (layers_ + 0.5) * dp) / speed, now - begin) : 0;
+          speed > 0 ? std::min((distance_ - (layers_ + 0.5) * dp) / speed, now - begin) : 0;
       const Vec3 ahead = ago * velocity;
       for (std::size_t k = 0; k < inlet_.layer.size(); ++k) {
         const auto number = static_cast<std::uint64_t>(layers_) * inlet_.layer.size() + k;
         if (inlet_.share < 1 && random_uniform(inlet_.seed, number) >= inlet_.share) continue;
-        newcomers.push_back({to_scene<Dim>(inlet_.layer[k] + ahead), to_scene<Dim>(velocity)});
+        inserted.push_back({to_scene<Dim>(inlet_.layer[k] + ahead), to_scene<Dim>(velocity)});
       }
     }
-    let_in(world, *water_, inlet_.name, newcomers);
+    insert_particles(world, *water_, inlet_.name, inserted);
   }
 
   void save(StateSink& sink, const std::string& at) const override {
-    sink.put_number(at + "way", way_);
+    sink.put_number(at + "distance", distance_);
     sink.put_number(at + "layers", layers_);
     sink.put_number(at + "time", last_);
   }
   void load(const StateSource& source, const std::string& at) override {
-    way_ = source.number(at + "way");
+    distance_ = source.number(at + "distance");
     layers_ = source.number(at + "layers");
     last_ = source.number(at + "time");
   }
@@ -80,9 +80,9 @@ class InletFlow final : public Effect<Dim> {
     return {v[0](nowhere, time), v[1](nowhere, time), v[2](nowhere, time)};
   }
   const InletParameters& inlet_;
-  double way_ = 0;     ///< that the water has come through, m
-  double layers_ = 0;  ///< that have entered
-  double last_ = 0;    ///< time of the last call, s
+  double distance_ = 0;  ///< that the water has come through, m
+  double layers_ = 0;    ///< that have entered
+  double last_ = 0;      ///< time of the last call, s
   ParticleSet<Dim>* water_ = nullptr;
 };
 

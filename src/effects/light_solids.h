@@ -22,13 +22,13 @@ namespace sphgeo {
 /// spacing to one, with water or sand on both sides: 1.2 dp / (c sqrt(L)) holds for all, and at 1.6
 /// the first breaks. A rigid body moves as a whole: its thickness is its smallest extent.
 ///
-/// A plate also vibrates through its thickness. A spring that looks at it once in half of that
-/// period, or a little more often, drives it up, as in any scheme of two time steps: seen for a
+/// A plate also vibrates through its thickness. Coupling steps near half of that period, or a
+/// little shorter, are unstable, as in any scheme of two time steps: seen for a
 /// plate of two layers with L of 4.7 in sand, at 3 steps to the period. So beside bodies with L
 /// above 2 the acoustic step is at most 1.5 of their own.
 ///
 /// (Where water and soil are compressed by the mean velocity of a solid in the step before, as in
-/// the print, the spring is one and a half steps late, and only radiation damps what that feeds to
+/// the paper, the spring is one and a half steps late, and only radiation damps what that feeds to
 /// it: dt has to be below 0.4 dp / (c L), and plates shake long before.)
 template <int Dim>
 double step_beside_light_solids(const World<Dim>& world, const std::string& set_name) {

@@ -1,5 +1,5 @@
 #pragma once
-// Which particles of the skin of solids may come to touch another solid.
+// Which interface particles of solids may come to touch another solid.
 
 #include <Eigen/Geometry>
 #include <cstdint>

@@ -28,7 +28,7 @@ class OutletFlow final : public Effect<Dim> {
   }
 
   void apply(World<Dim>& world) override {
-    Exchanged<Dim>& book = world.exchanged(outlet_.name);
+    Exchanged<Dim>& account = world.exchanged(outlet_.name);
     for (const std::string& name : outlet_.sets) {
       ParticleSet<Dim>* set = world.find(name);
       if (set == nullptr) continue;
@@ -43,9 +43,9 @@ class OutletFlow final : public Effect<Dim> {
           set->size(), [&](Index i) { return leaves[static_cast<std::size_t>(i)] != 0; });
       if (gone.empty()) continue;
       for (const std::uint32_t i : gone) {
-        book.left += 1;
-        book.add(-1, set->scalar(fields::mass)[i], x[i], set->vector(fields::velocity)[i],
-                 world.gravity());
+        account.left += 1;
+        account.add(-1, set->scalar(fields::mass)[i], x[i], set->vector(fields::velocity)[i],
+                    world.gravity());
       }
       set->permute(indices_where(
           set->size(), [&](Index i) { return leaves[static_cast<std::size_t>(i)] == 0; }));

@@ -8,7 +8,7 @@ namespace {
 
 /// Force of the pore pressure on the soil, -n^s grad p (Eqs. 11, 46).
 ///
-/// The print interpolates p to the soil (Eq. 47) and takes its gradient there; with the water's
+/// The paper interpolates p to the soil (Eq. 47) and takes its gradient there; with the water's
 /// -n^w grad p, taken elsewhere with another kernel, both do not add up to the gradient of the
 /// mixture's pressure, and momentum comes from nowhere wherever the porosity varies. Here the
 /// pressure force of each water particle on the mixture, F_i = -V_i grad p, is known from the sums
@@ -33,13 +33,16 @@ class PorePressure final : public Effect<Dim> {
 
   std::string acts_on() const override { return "soil near water"; }
   Needs needs() const override {
-    return {{{"water", &fields::water_fraction, Access::read},
+    Needs n{{{"water", &fields::water_fraction, Access::read},
              {"water", &fields::density, Access::read},
              {"water", &fields::mass, Access::read},
              {"water", &fields::pressure_force, Access::read},
              {"soil", &fields::acceleration_sum, Access::add},
              {"soil", &fields::water_acceleration, Access::write}},
             {{"soil", "water"}, {"water", "soil"}}};
+    need_pore_pairs<Dim>(n);
+    n.record<Force>("water", Access::scratch);
+    return n;
   }
 
   void prepare(World<Dim>& world) override {
@@ -54,9 +57,9 @@ class PorePressure final : public Effect<Dim> {
     const auto& force = water_->vector(fields::pressure_force);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& records = pore_records<T>(world, "water");
+      const auto records = write_records<Force, T>(world, "water");
       for_targets(world.list("water", "soil"), [&](Index i) {
-        put_vector<Dim>(records[i], Vec<Dim>(((1 - n[i]) * m[i] / (n[i] * rho[i])) * force[i]));
+        records[i].put(Force::vector, ((1 - n[i]) * m[i] / (n[i] * rho[i])) * force[i]);
       });
     });
     const SoilParameters& parts = world.parameters().soil;
@@ -65,7 +68,7 @@ class PorePressure final : public Effect<Dim> {
     auto& a = soil_->vector(fields::acceleration_sum);
     auto& by_water = soil_->vector(fields::water_acceleration);
     parallel_for(soil_->size(), [&](Index k) { by_water[k].setZero(); });
-    gather_vectors(world, "soil", "water", [&](Index k, const Vec<Dim>& sum) {
+    gather_vectors<Force>(world, "soil", "water", [&](Index k, const Vec<Dim>& sum) {
       by_water[k] = sum / parts[part[k]].grain_density;  // omega / m
       a[k] += by_water[k];
     });
@@ -111,6 +114,8 @@ class PorePressure final : public Effect<Dim> {
   }
 
  private:
+  using Force = packed::PoreForce<Dim>;
+
   double left_over_ = 0;
   ParticleSet<Dim>* water_ = nullptr;
   ParticleSet<Dim>* soil_ = nullptr;

@@ -53,7 +53,7 @@ PairWeights<Dim> quadratic_weights(World<Dim>& world, const std::string& name) {
   const auto& clamp = set.tag(fields::clamp);
   const double h = set.smoothing_length();
   const Kernel<Dim> kernel(h);
-  const auto monomials = [&](const Vec<Dim>& r) {  // of the way to the neighbor
+  const auto monomials = [&](const Vec<Dim>& r) {  // of the distance to the neighbor
     Terms p;
     for (int k = 0; k < Dim; ++k) p[k] = r[k] / h;
     for (int k = 0, n = Dim; k < Dim; ++k)

@@ -7,7 +7,7 @@
 namespace sphgeo {
 namespace {
 
-/// Water that is added where the surface has sunk by nearly a spacing: at a place of the layer
+/// Water that is added where the surface has sunk by nearly a spacing: at a position of the layer
 /// below the level that has no water, soil or wall within 0.9 spacings. It takes the mean velocity
 /// of the water within two spacings.
 template <int Dim>
@@ -33,40 +33,40 @@ class ReservoirFill final : public Effect<Dim> {
   void prepare(World<Dim>& world) override {
     water_ = &world.set("water");
     world.exchanged(reservoir_.name);
-    places_.clear();
-    for (const Vec3& p : reservoir_.positions) places_.push_back(to_scene<Dim>(p));
+    positions_.clear();
+    for (const Vec3& p : reservoir_.positions) positions_.push_back(to_scene<Dim>(p));
   }
 
   void apply(World<Dim>& world) override {
     const double dp = water_->spacing(), reach = 2 * dp;
-    std::vector<char> taken(places_.size(), 0);
-    std::vector<double> weight(places_.size(), 0);
-    std::vector<Vec<Dim>> velocity(places_.size(), Vec<Dim>::Zero());
+    std::vector<char> taken(positions_.size(), 0);
+    std::vector<double> weight(positions_.size(), 0);
+    std::vector<Vec<Dim>> velocity(positions_.size(), Vec<Dim>::Zero());
     for (const auto& set : world.sets()) {
       const bool water = set.get() == water_;
       const auto& x = set->vector(fields::position);
       for_near(x, set->size(), reach, [&](Index i, std::size_t p) {
-        const double distance = (x[i] - places_[p]).norm();
+        const double distance = (x[i] - positions_[p]).norm();
         if (distance < 0.9 * dp) taken[p] = 1;
         if (!water || distance > reach) return;
         weight[p] += 1;
         velocity[p] += water_->vector(fields::velocity)[i];
       });
     }
-    std::vector<Newcomer<Dim>> newcomers;
-    for (std::size_t p = 0; p < places_.size(); ++p)
+    std::vector<InsertedParticle<Dim>> inserted;
+    for (std::size_t p = 0; p < positions_.size(); ++p)
       if (!taken[p])
-        newcomers.push_back({places_[p], weight[p] > 0 ? Vec<Dim>(velocity[p] / weight[p])
-                                                       : Vec<Dim>(Vec<Dim>::Zero())});
-    let_in(world, *water_, reservoir_.name, newcomers);
+        inserted.push_back({positions_[p], weight[p] > 0 ? Vec<Dim>(velocity[p] / weight[p])
+                                                         : Vec<Dim>(Vec<Dim>::Zero())});
+    insert_particles(world, *water_, reservoir_.name, inserted);
   }
 
-  std::size_t bytes() const override { return places_.size() * sizeof(Vec<Dim>); }
+  std::size_t bytes() const override { return positions_.size() * sizeof(Vec<Dim>); }
 
  private:
   using Cell = std::array<Index, Dim>;
 
-  /// Calls f(i, p) for the particles and places that may be within reach, particle by particle.
+  /// Calls f(i, p) for the particles and positions that may be within reach, particle by particle.
   template <class F>
   void for_near(const Field<Vec<Dim>>& x, Index n, double reach, F&& f) {
     const auto cell_of = [&](const Vec<Dim>& at) {
@@ -76,10 +76,10 @@ class ReservoirFill final : public Effect<Dim> {
       return c;
     };
     if (cells_.empty())
-      for (std::size_t p = 0; p < places_.size(); ++p) {
-        cells_[cell_of(places_[p])].push_back(p);
-        lo_ = p == 0 ? places_[p] : Vec<Dim>(lo_.cwiseMin(places_[p]));
-        hi_ = p == 0 ? places_[p] : Vec<Dim>(hi_.cwiseMax(places_[p]));
+      for (std::size_t p = 0; p < positions_.size(); ++p) {
+        cells_[cell_of(positions_[p])].push_back(p);
+        lo_ = p == 0 ? positions_[p] : Vec<Dim>(lo_.cwiseMin(positions_[p]));
+        hi_ = p == 0 ? positions_[p] : Vec<Dim>(hi_.cwiseMax(positions_[p]));
       }
     for (Index i = 0; i < n; ++i) {
       if (!((x[i].array() >= lo_.array() - reach).all() &&
@@ -106,7 +106,7 @@ class ReservoirFill final : public Effect<Dim> {
   }
 
   const ReservoirParameters& reservoir_;
-  std::vector<Vec<Dim>> places_;
+  std::vector<Vec<Dim>> positions_;
   std::map<Cell, std::vector<std::size_t>> cells_;
   Vec<Dim> lo_ = Vec<Dim>::Zero(), hi_ = Vec<Dim>::Zero();
   ParticleSet<Dim>* water_ = nullptr;

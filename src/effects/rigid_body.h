@@ -52,7 +52,7 @@ class RigidBodies {
   RigidMotion motion(const World<Dim>& world, std::size_t body) const;
 
   /// Moves the particles of a body for a time with its velocity and turning. Its angular momentum
-  /// stays, and its velocities become what that means at the new places.
+  /// stays, and its velocities become what that means at the new positions.
   static void advance(ParticleSet<Dim>& set, const std::vector<std::uint32_t>& particles,
                       RigidMotion m, double time);
 

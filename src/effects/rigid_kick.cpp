@@ -15,10 +15,11 @@ template <int Dim>
 class RigidKick final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"rigid_kick", Stage::solid_kick, "Eqs. 94, 95, 100, 101",
-            "velocity, turning and place of rigid solids at the end of their step; bound of their "
-            "clock",
-            false};
+    return {
+        "rigid_kick", Stage::solid_kick, "Eqs. 94, 95, 100, 101",
+        "velocity, turning and position of rigid solids at the end of their step; bound of their "
+        "clock",
+        false};
   }
   static Binding<Dim> bind(const World<Dim>& world) { return bind_solids<RigidKick>(world, true); }
 
@@ -29,6 +30,7 @@ class RigidKick final : public Effect<Dim> {
   Needs needs() const override {
     return {{{set_name(), &fields::acceleration_sum, Access::read},
              {set_name(), &fields::mass, Access::read},
+             {set_name(), &fields::fluid_force, Access::read, true},
              {set_name(), &fields::position, Access::update},
              {set_name(), &fields::velocity, Access::update},
              {set_name(), &fields::acceleration, Access::update}},
@@ -86,7 +88,7 @@ class RigidKick final : public Effect<Dim> {
     RigidMotion motion = bodies_.motion(world, body);
     Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
     for (const Index i : particles) {
-      Vec<Dim> f = m[i] * (sum[i] + world.pull(x[i]));
+      Vec<Dim> f = m[i] * (sum[i] + world.body_acceleration(x[i]));
       if (fluid) f += (*fluid)[i];
       force += to_space<Dim>(f);
       torque += (to_space<Dim>(x[i]) - motion.center).cross(to_space<Dim>(f));

@@ -8,21 +8,24 @@
 namespace sphgeo {
 namespace {
 
-/// Velocity and place at the end of the acoustic step (Eqs. 97, 98), and the step bounds of the
+/// Velocity and position at the end of the acoustic step (Eqs. 97, 98), and the step bounds of the
 /// soil (Eqs. 91, 92). A fixed skeleton stays, a prescribed one follows the velocity of its body.
 template <int Dim>
 class SoilKick final : public Effect<Dim> {
  public:
   static EffectInfo info() {
     return {"soil_kick", Stage::kick, "Eqs. 91, 92, 97, 98",
-            "velocity and place of soil at the end of the step; bounds of both clocks", false};
+            "velocity and position of soil at the end of the step; bounds of both clocks", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
-    return {std::make_unique<SoilKick>(world.parameters().soil.deformable), "there is soil"};
+    return {std::make_unique<SoilKick>(world), "there is soil"};
   }
 
-  explicit SoilKick(bool deformable) : deformable_(deformable) {}
+  explicit SoilKick(const World<Dim>& world)
+      : deformable_(world.parameters().soil.deformable),
+        current_geometry_(world.parameters().numerics.soil_pair_geometry == PairGeometry::current) {
+  }
 
   std::string acts_on() const override { return "soil"; }
   Needs needs() const override {
@@ -31,6 +34,8 @@ class SoilKick final : public Effect<Dim> {
              {"soil", &fields::acceleration, Access::write}},
             {}};
     if (deformable_) n.fields.push_back({"soil", &fields::acceleration_sum, Access::read});
+    n.record<packed::SoilState<Dim>>("soil", Access::write, packed::SoilState<Dim>::velocity);
+    if (current_geometry_) n.record<Position<Dim>>("soil", Access::update);
     return n;
   }
 
@@ -44,10 +49,11 @@ class SoilKick final : public Effect<Dim> {
     auto& a = soil_->vector(fields::acceleration);
     const Field<Vec<Dim>>* sum = deformable_ ? &soil_->vector(fields::acceleration_sum) : nullptr;
     const auto& part = soil_->tag(fields::part);
-    const bool repack = world.parameters().numerics.soil_pair_geometry == PairGeometry::current;
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& records = world.records("soil", 0).template get<T>();
+      const auto records = write_records<packed::SoilState<Dim>, T>(world, "soil");
+      std::optional<RecordPacking<Position<Dim>, T>> positions;
+      if (current_geometry_) positions = write_records<Position<Dim>, T>(world, "soil");
       parallel_for(soil_->size(), [&](Index i) {
         if (parts[part[i]].moves) {
           a[i] = (*sum)[i];
@@ -58,9 +64,8 @@ class SoilKick final : public Effect<Dim> {
         } else {
           follow(*parts[part[i]].velocity, dt, x[i], v[i], a[i]);
         }
-        T* slot = records[i];
-        for (int k = 0; k < Dim; ++k) slot[soil_slot::velocity + k] = static_cast<T>(v[i][k]);
-        if (repack) records.set_position(i, x[i]);
+        records[i].put(packed::SoilState<Dim>::velocity, v[i]);
+        if (positions) positions->set_position(i, x[i]);
       });
     });
   }
@@ -100,7 +105,7 @@ class SoilKick final : public Effect<Dim> {
     v = end;
   }
 
-  bool deformable_;
+  bool deformable_, current_geometry_;
   ParticleSet<Dim>* soil_ = nullptr;
 };
 

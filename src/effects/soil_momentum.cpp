@@ -6,7 +6,7 @@ namespace {
 
 /// Stress between two soil particles by the Riemann flux (Eqs. 49 to 54).
 ///
-/// Eq. 49 prints sigma_i + sigma_j. Here each stress comes with the correction B of its particle,
+/// Eq. 49 has sigma_i + sigma_j. Here each stress comes with the correction B of its particle,
 /// by which Eq. 55 is made exact for linear velocities: only then does the work of these forces
 /// equal that of the stress on the velocity gradient, pair by pair. With the correction in Eq. 55
 /// alone, energy grows without bound near every surface.
@@ -16,7 +16,10 @@ struct StressPair {
   double impedance;      ///< rho0 c0, when all soil is alike
   double inverse_sound;  ///< 1 / c0, when all soil is alike
   double limiter;        ///< xi^s
-  static constexpr int records = Uniform ? 2 : soil_records<Dim>;
+  using Soil = packed::SoilState<Dim>;
+  using Parameters = packed::SoilContact<Dim>;
+  template <class T>
+  using Side = std::conditional_t<Uniform, UniformSoilRecord<Dim, T>, SoilRecord<Dim, T>>;
 
   template <class T>
   struct Sums {
@@ -24,15 +27,15 @@ struct StressPair {
   };
 
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T, records>& i, const Record<Dim, T, records>& j,
-                  const LaneVec<Dim, T>& r, const T& r2) const {
-    using namespace soil_slot;
-    const T gradient = kernel.dw_over_r(r2) * j[volume];
+  void operator()(Sums<T>& sum, const Side<T>& i, const Side<T>& j, const LaneVec<Dim, T>& r,
+                  const T& r2) const {
+    const T gradient = kernel.dw_over_r(r2) * j[Soil::volume];
     // U_L - U_R = -(v_i - v_j) . e (Eq. 52).
-    const T closing = max(T(0), -(dot(i.vec(velocity) - j.vec(velocity), r) * inverse_length(r2)));
+    const T closing =
+        max(T(0), -(dot(i.vec(Soil::velocity) - j.vec(Soil::velocity), r) * inverse_length(r2)));
     T stress_i[Dim * Dim], two_stress[Dim * Dim];
-    unpack_stress(i, stress_i);
-    unpack_stress(j, two_stress);
+    unpack_stress<Dim>(i, stress_i);
+    unpack_stress<Dim>(j, two_stress);
     for (int k = 0; k < Dim * Dim; ++k) two_stress[k] += stress_i[k];
     // Eqs. 50, 51, 54: twice sigma* is the sum of both stresses less `excess` in pressure.
     T excess;
@@ -40,11 +43,12 @@ struct StressPair {
       const T beta = min(T(limiter * inverse_sound) * closing, T(1));
       excess = beta * T(impedance) * closing;
     } else {
-      const T z_i = i[soil_slot::impedance<Dim>], z_j = j[soil_slot::impedance<Dim>];
+      const T z_i = i[Parameters::impedance], z_j = j[Parameters::impedance];
       // The null record that pads the lists has no impedance, but i has.
       const T share = T(1) / (z_i + z_j);
-      const T beta = min(T(limiter) * (i[density<Dim>] + j[density<Dim>]) * share * closing, T(1));
-      excess = (z_i - z_j) * share * (j[pressure<Dim>] - i[pressure<Dim>]) +
+      const T beta = min(
+          T(limiter) * (i[Parameters::density] + j[Parameters::density]) * share * closing, T(1));
+      excess = (z_i - z_j) * share * (j[Parameters::pressure] - i[Parameters::pressure]) +
                T(2) * beta * z_i * z_j * share * closing;
     }
     sum.force += gradient * (times(two_stress, r) - excess * r);
@@ -62,24 +66,29 @@ class SoilMomentum final : public Effect<Dim> {
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
     if (!world.parameters().soil.deformable) return {"no skeleton is deformable"};
-    return {std::make_unique<SoilMomentum>(), "there is soil with a deformable skeleton"};
+    return {std::make_unique<SoilMomentum>(world.parameters().soil.uniform),
+            "there is soil with a deformable skeleton"};
   }
+
+  explicit SoilMomentum(bool uniform) : uniform_(uniform) {}
 
   std::string acts_on() const override { return "soil"; }
   Needs needs() const override {
-    return {{{"soil", &fields::volume, Access::read},
-             {"soil", &fields::stress, Access::read},
+    Needs n{{{"soil", &fields::volume, Access::read},
              {"soil", &fields::mass, Access::read},
              {"soil", &fields::position, Access::read},
              {"soil", &fields::acceleration_sum, Access::write}},
             {{"soil", "soil"}}};
+    n.record<Position<Dim>>("soil", Access::read);
+    need_soil_records<Dim>(n, Access::read, !uniform_);
+    return n;
   }
 
   void prepare(World<Dim>& world) override { soil_ = &world.set("soil"); }
 
   void apply(World<Dim>& world) override {
     const SoilParameters& parts = world.parameters().soil;
-    if (parts.uniform) run<true>(world, parts);
+    if (uniform_) run<true>(world, parts);
     else run<false>(world, parts);
   }
 
@@ -95,14 +104,16 @@ class SoilMomentum final : public Effect<Dim> {
     const auto& volume = soil_->scalar(fields::volume);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      const auto records = stress_records<T, Pair::records>(world);
+      const auto records = soil_records<T, !Uniform>(world);
       gather<Pair::template Sums>(
           world.list("soil", "soil"), records, records, pair, [&](Index i, const auto& sum) {
-            sum_of_forces[i] = world.pull(x[i]) + to_vec(sum.force) * (volume[i] / m[i]);
+            sum_of_forces[i] =
+                world.body_acceleration(x[i]) + to_vec(sum.force) * (volume[i] / m[i]);
           });
     });
   }
 
+  bool uniform_;
   ParticleSet<Dim>* soil_ = nullptr;
 };
 

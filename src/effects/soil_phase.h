@@ -1,12 +1,14 @@
 #pragma once
-// What the effects of the soil phase share: record layout, the Riemann
-// flux.
+// What the effects of the soil phase share: parameters of its parts, their packing, the moment of
+// gradients.
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "effects/lattice_sums.h"
+#include "effects/soil_packing.h"
 #include "effects/water_phase.h"
 #include "materials/drucker_prager.h"
 #include "sph/gather.h"
@@ -32,64 +34,43 @@ Kernel<Dim> soil_kernel(const ParticleSet<Dim>& soil) {
   return kernel;
 }
 
-/// Slots of a soil record behind the position. Volume and velocity sit where the water has them.
-/// Passes over soil of one kind read two records; the third (in 2D the second) holds what else
-/// unlike soils and walls need.
-namespace soil_slot {
-inline constexpr int volume = 3;    ///< V
-inline constexpr int velocity = 4;  ///< v, Dim numbers
-inline constexpr int scratch = 7;   ///< of the reinitialization, between two packings
-/// Number k of sigma . B by rows, Dim x Dim numbers: in 3D the last one takes the place that
-/// velocity leaves.
+/// Whether passes read the parameters of single particles: there are unlike soils, or walls.
 template <int Dim>
-constexpr int stress(int k) {
-  return k < 8 ? 8 + k : 7;
-}
-template <int Dim>
-inline constexpr int pressure =
-    Dim == 2 ? 12 : 16;  ///< P' = -tr(sigma)/3 of Eq. 51, three-dimensional also in plane strain
-template <int Dim>
-inline constexpr int density = pressure<Dim> + 1;  ///< rho_0 of the part
-template <int Dim>
-inline constexpr int impedance = pressure<Dim> + 2;  ///< rho_0 c_0 of the part
-template <int Dim>
-inline constexpr int friction =
-    pressure<Dim> + 3;  ///< mu = tan phi of the part, between soil and rough walls
-template <int Dim>
-inline constexpr int borne =
-    Dim == 2 ? 6
-             : 20;  ///< share of its weight that the skeleton bears itself: less than 1 in water
-}  // namespace soil_slot
-
-/// Number of records of a soil particle with all that is in them.
-template <int Dim>
-inline constexpr int soil_records = Dim == 2 ? 2 : 3;
-
-/// Number of records that this scene needs.
-template <int Dim>
-int soil_records_used(const World<Dim>& world) {
-  return world.parameters().soil.uniform && !world.find("walls") && !world.find("skin")
-             ? 2
-             : soil_records<Dim>;
+bool soil_parameters_used(const World<Dim>& world) {
+  return !world.parameters().soil.uniform || world.find("walls") || world.find("interface");
 }
 
-/// What a pass sees of a soil particle with all its records.
+/// What a pass sees of a soil particle with all its records, and of one among its like.
 template <int Dim, class T>
-using SoilRecord = Record<Dim, T, soil_records<Dim>>;
+using SoilRecord = std::conditional_t<
+    Dim == 2, Record<T, packed::SoilState<Dim>, packed::SoilStress<Dim>>,
+    Record<T, packed::SoilState<Dim>, packed::SoilStress<Dim>, packed::SoilMaterial>>;
+template <int Dim, class T>
+using UniformSoilRecord = Record<T, packed::SoilState<Dim>, packed::SoilStress<Dim>>;
 
-/// The record arrays of the soil: N of them.
-template <class T, int N, int Dim>
-auto stress_records(World<Dim>& world) {
-  const auto& first = world.records("soil", 0).template get<T>();
-  const auto& second = world.records("soil", 1).template get<T>();
-  if constexpr (N == 2) return with(first, second);
-  else return with(first, second, world.records("soil", 2).template get<T>());
+/// The records of the soil, all or what passes over soil of one kind read.
+template <class T, bool All, int Dim>
+auto soil_records(World<Dim>& world) {
+  const auto first = read_records<packed::SoilState<Dim>, T>(world, "soil");
+  const auto second = read_records<packed::SoilStress<Dim>, T>(world, "soil");
+  if constexpr (Dim == 2 || !All) return with(first, second);
+  else return with(first, second, read_records<packed::SoilMaterial, T>(world, "soil"));
+}
+
+/// Names them.
+template <int Dim>
+void need_soil_records(Needs& needs, Access access, bool all) {
+  needs.record<packed::SoilState<Dim>>("soil", access);
+  needs.record<packed::SoilStress<Dim>>("soil", access);
+  if (Dim == 3 && all) needs.record<packed::SoilMaterial>("soil", access);
 }
 
 /// sigma . B of a record.
-template <int Dim, class T, int N>
-void unpack_stress(const Record<Dim, T, N>& record, T (&a)[Dim * Dim]) {
-  for (int k = 0; k < Dim * Dim; ++k) a[k] = record[soil_slot::stress<Dim>(k)];
+template <int Dim, class T, class... R>
+void unpack_stress(const Record<T, R...>& record, T (&a)[Dim * Dim]) {
+  using Stress = packed::SoilStress<Dim>;
+  for (int k = 0; k < Stress::stress.count; ++k) a[k] = record.at(Stress::stress, k);
+  if constexpr (Dim == 3) a[8] = record[packed::SoilState<3>::stress_zz];
 }
 
 /// a . r of a tensor whose numbers stand by rows.
@@ -156,13 +137,21 @@ struct InverseMoment {
   }
 };
 
+/// Names what SoilPacking needs beside the fields of the state, and what it writes.
+template <int Dim>
+void need_soil_packing(Needs& needs, bool parameters) {
+  needs.fields.push_back({"soil", &fields::water_acceleration, Access::previous, true});
+  need_soil_records<Dim>(needs, Access::write, parameters);
+}
+
 /// Writes all records of a soil particle but the position from the fields, as predict and
 /// observation do.
 template <int Dim, class T>
 class SoilPacking {
  public:
   SoilPacking(World<Dim>& world, const ParticleSet<Dim>& soil)
-      : count_(soil_records_used(world)),
+      : records_(write_records<Soil, T>(world, "soil")),
+        stresses_(write_records<Stress, T>(world, "soil")),
         parts_(world.parameters().soil),
         volume_(soil.scalar(fields::volume)),
         velocity_(soil.vector(fields::velocity)),
@@ -172,43 +161,58 @@ class SoilPacking {
         by_water_(soil.has(fields::water_acceleration) ? &soil.vector(fields::water_acceleration)
                                                        : nullptr),
         gravity_(world.gravity()) {
-    for (int k = 0; k < count_; ++k) records_[k] = &world.records("soil", k).template get<T>();
+    if constexpr (Dim == 3)
+      if (soil_parameters_used(world))
+        parameters_ = write_records<packed::SoilMaterial, T>(world, "soil");
   }
 
   void operator()(Index i) const {
-    namespace slot = soil_slot;
-    T* one = (*records_[0])[i];
-    one[slot::volume] = static_cast<T>(volume_[i]);
-    for (int k = 0; k < Dim; ++k) one[slot::velocity + k] = static_cast<T>(velocity_[i][k]);
-
+    const auto record = records_[i];
+    const auto stress = stresses_[i];
+    record.put(Soil::volume, volume_[i]);
+    record.put(Soil::velocity, velocity_[i]);
     const Sym3 &s = stress_[i], &b = correction_[i];
     for (int k = 0; k < Dim; ++k)
       for (int l = 0; l < Dim; ++l) {
         double sum = 0;
         for (int m = 0; m < Dim; ++m)
           sum += s[tensor_index<Dim>[k][m]] * b[tensor_index<Dim>[m][l]];
-        put(i, slot::stress<Dim>(k * Dim + l), sum);
+        const int number = k * Dim + l;
+        if (number < Stress::stress.count) stress.put(Stress::stress, number, sum);
+        else if constexpr (Dim == 3) record.put(Soil::stress_zz, sum);
       }
-    if (count_ * record_size <= slot::pressure<Dim>) return;
-    const SoilPart& part = parts_[part_[i]];
-    put(i, slot::pressure<Dim>, -(s[0] + s[1] + s[2]) / 3);
-    put(i, slot::density<Dim>, part.density);
-    double borne = 1;
-    if (by_water_)
-      borne = std::clamp(
-          1 + (*by_water_)[i].dot(gravity_) / std::max(gravity_.squaredNorm(), 1e-30), 0.0, 1.0);
-    put(i, slot::borne<Dim>, borne);
-    put(i, slot::impedance<Dim>, part.impedance());
-    put(i, slot::friction<Dim>, part.friction);
+    if constexpr (Dim == 2) {
+      put_parameters(stress, i);
+      record.put(Soil::borne, borne(i));
+    } else if (parameters_) {
+      const auto parameters = (*parameters_)[i];
+      put_parameters(parameters, i);
+      parameters.put(packed::SoilMaterial::borne, borne(i));
+    }
   }
 
  private:
-  void put(Index i, int slot, double value) const {
-    (*records_[slot / record_size])[i][slot % record_size] = static_cast<T>(value);
+  using Soil = packed::SoilState<Dim>;
+  using Stress = packed::SoilStress<Dim>;
+
+  template <class R>
+  void put_parameters(const PackedRecord<R, T>& record, Index i) const {
+    const SoilPart& part = parts_[part_[i]];
+    const Sym3& s = stress_[i];
+    record.put(R::pressure, -(s[0] + s[1] + s[2]) / 3);
+    record.put(R::density, part.density);
+    record.put(R::impedance, part.impedance());
+    record.put(R::friction, part.friction);
+  }
+  double borne(Index i) const {
+    if (!by_water_) return 1;
+    return std::clamp(1 + (*by_water_)[i].dot(gravity_) / std::max(gravity_.squaredNorm(), 1e-30),
+                      0.0, 1.0);
   }
 
-  int count_;
-  Records<Dim, T>* records_[soil_records<Dim>] = {};
+  RecordPacking<Soil, T> records_;
+  RecordPacking<Stress, T> stresses_;
+  std::optional<RecordPacking<packed::SoilMaterial, T>> parameters_;  // where they are used, in 3D
   const SoilParameters& parts_;
   const Field<double>& volume_;
   const Field<Vec<Dim>>& velocity_;

@@ -7,21 +7,23 @@ namespace {
 /// Mean of a number of the water around, and the weights' sum.
 template <int Dim>
 struct WaterMean {
+  using Water = packed::WaterState<Dim>;
+  using Observed = packed::ObservedWater<Dim>;
   Kernel<Dim> kernel;
   template <class T>
   struct Sums {
     T weight{}, pressure{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j,
+  void operator()(Sums<T>& sum, const Record<T, Position<Dim>>&, const Record<T, Observed>& j,
                   const LaneVec<Dim, T>&, const T& r2) const {
-    const T w = kernel.w(r2) * j[water_slot::volume];
+    const T w = kernel.w(r2) * j[Observed::volume];
     sum.weight += w;
-    sum.pressure += w * j[water_slot::pressure];
+    sum.pressure += w * j[Water::pressure];
   }
 };
 
-/// Pore pressure at the soil (Eq. 47), for whoever looks at it: the force on the soil does not need
+/// Pore pressure at the soil (Eq. 47), for observers: the force on the soil does not need
 /// it (see PorePressure).
 template <int Dim>
 class SoilPorePressure final : public Effect<Dim> {
@@ -37,10 +39,13 @@ class SoilPorePressure final : public Effect<Dim> {
 
   std::string acts_on() const override { return "soil near water"; }
   Needs needs() const override {
-    return {{{"water", &fields::pressure, Access::read},
-             {"water", &fields::volume, Access::read},
-             {"soil", &fields::pore_pressure, Access::write}},
-            {{"soil", "water"}}};
+    using Water = packed::WaterState<Dim>;
+    Needs n{{{"soil", &fields::pore_pressure, Access::write}}, {{"soil", "water"}}};
+    n.record<Position<Dim>>("water", Access::read);
+    n.record<Water>("water", Access::read, Water::pressure);
+    n.record<packed::ObservedWater<Dim>>("water", Access::read);
+    n.record<Position<Dim>>("soil", Access::read);
+    return n;
   }
 
   void prepare(World<Dim>& world) override {
@@ -53,10 +58,9 @@ class SoilPorePressure final : public Effect<Dim> {
     parallel_for(soil_->size(), [&](Index k) { p[k] = 0; });
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      // The first records: between two steps they hold the pressure and volume of now.
       gather<WaterMean<Dim>::template Sums>(
-          world.list("soil", "water"), world.records("soil").template get<T>(),
-          world.records("water").template get<T>(),
+          world.list("soil", "water"), read_records<Position<Dim>, T>(world, "soil"),
+          read_records<packed::ObservedWater<Dim>, T>(world, "water"),
           WaterMean<Dim>{Kernel<Dim>(water_->smoothing_length())}, [&](Index k, const auto& s) {
             if (s.weight > 0) p[k] = s.pressure / s.weight;
           });

@@ -5,22 +5,27 @@
 namespace sphgeo {
 namespace {
 
-/// Volume fraction, place and volume at the middle of the acoustic step (Eq. 96).
+/// Volume fraction, position and volume at the middle of the acoustic step (Eq. 96).
 template <int Dim>
 class SoilPredict final : public Effect<Dim> {
  public:
   static EffectInfo info() {
     return {"soil_predict", Stage::predict, "Eqs. 1, 96",
-            "volume fraction, place and volume of soil at the middle of the step", false};
+            "volume fraction, position and volume of soil at the middle of the step", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
-    return {std::make_unique<SoilPredict>(), "there is soil"};
+    return {std::make_unique<SoilPredict>(world), "there is soil"};
+  }
+
+  explicit SoilPredict(const World<Dim>& world)
+      : parameters_(soil_parameters_used(world)),
+        current_geometry_(world.parameters().numerics.soil_pair_geometry == PairGeometry::current) {
   }
 
   std::string acts_on() const override { return "soil"; }
   Needs needs() const override {
-    return {{{"soil", &fields::volume_fraction, Access::update},
+    Needs n{{{"soil", &fields::volume_fraction, Access::update},
              {"soil", &fields::position, Access::update},
              {"soil", &fields::volume_fraction_rate, Access::read},
              {"soil", &fields::velocity, Access::read},
@@ -29,12 +34,12 @@ class SoilPredict final : public Effect<Dim> {
              {"soil", &fields::gradient_correction, Access::read},
              {"soil", &fields::volume, Access::write}},
             {}};
+    need_soil_packing<Dim>(n, parameters_);
+    if (current_geometry_) n.record<Position<Dim>>("soil", Access::update);
+    return n;
   }
 
-  void prepare(World<Dim>& world) override {
-    soil_ = &world.set("soil");
-    for (int k = 0; k < soil_records_used(world); ++k) world.records("soil", k);
-  }
+  void prepare(World<Dim>& world) override { soil_ = &world.set("soil"); }
 
   void apply(World<Dim>& world) override {
     const double half = 0.5 * world.clock.dt_acoustic;
@@ -46,17 +51,17 @@ class SoilPredict final : public Effect<Dim> {
     const auto& v = soil_->vector(fields::velocity);
     const auto& m = soil_->scalar(fields::mass);
     const auto& part = soil_->tag(fields::part);
-    const bool repack = world.parameters().numerics.soil_pair_geometry == PairGeometry::current;
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& first = world.records("soil", 0).template get<T>();
+      std::optional<RecordPacking<Position<Dim>, T>> positions;
+      if (current_geometry_) positions = write_records<Position<Dim>, T>(world, "soil");
       const SoilPacking<Dim, T> pack(world, *soil_);
       parallel_for(soil_->size(), [&](Index i) {
         n[i] += half * rate[i];
         x[i] += half * v[i];
         volume[i] = m[i] / (n[i] * parts[part[i]].grain_density);
         pack(i);
-        if (repack) first.set_position(i, x[i]);
+        if (positions) positions->set_position(i, x[i]);
       });
     });
   }
@@ -68,6 +73,7 @@ class SoilPredict final : public Effect<Dim> {
   }
 
  private:
+  bool parameters_, current_geometry_;
   ParticleSet<Dim>* soil_ = nullptr;
 };
 

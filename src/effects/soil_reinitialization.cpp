@@ -23,10 +23,11 @@ struct SoilArrangement {
     T divergence{};                              ///< sum of r . grad W V, minus Dim in the bulk
   };
 
-  template <class T, int N, int M>
-  void operator()(Sums<T>& sum, const Record<Dim, T, N>&, const Record<Dim, T, M>& j,
-                  const LaneVec<Dim, T>& r, const T& r2) const {
-    const T volume = j[soil_slot::volume];
+  /// j is soil at rest, or a wall.
+  template <class T, class Neighbor>
+  void operator()(Sums<T>& sum, const Record<T, packed::RestingSoil<Dim>>&,
+                  const Record<T, Neighbor>& j, const LaneVec<Dim, T>& r, const T& r2) const {
+    const T volume = j[Neighbor::volume];
     sum.number += kernel.w(r2) * volume;
     if constexpr (Transport) {
       const T slope = kernel.dw_over_r(r2) * volume;
@@ -39,15 +40,16 @@ struct SoilArrangement {
 /// How many neighbors of a particle lie on the free surface.
 template <int Dim>
 struct NearSurface {
+  using Soil = packed::RestingSoil<Dim>;
   Kernel<Dim> kernel;
   template <class T>
   struct Sums {
     T share{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j,
+  void operator()(Sums<T>& sum, const Record<T, Soil>&, const Record<T, Soil>& j,
                   const LaneVec<Dim, T>&, const T& r2) const {
-    sum.share += kernel.w(r2) * j[soil_slot::volume] * j[soil_slot::scratch];
+    sum.share += kernel.w(r2) * j[Soil::volume] * j[Soil::on_surface];
   }
 };
 
@@ -86,12 +88,15 @@ class SoilReinitialization final : public Effect<Dim> {
              {"soil", &fields::initial_volume_fraction, Access::read},
              {"soil", &fields::volume_fraction, Access::update}},
             {{"soil", "soil"}}};
-    if (sums_) n.fields.push_back({"soil", &fields::crowding, Access::write});
+    if (sums_) n.fields.push_back({"soil", &fields::number_density_ratio, Access::write});
     if (transport_) {
       n.fields.push_back({"soil", &fields::position, Access::update});
       n.fields.push_back({"soil", &fields::surface, Access::write});
     }
-    need_walls(n, "soil", walls_);
+    if (transport_) n.record<Soil>("soil", Access::scratch);
+    else n.record<Soil>("soil", Access::scratch, Soil::volume);
+    n.record<Position<Dim>>("soil", transport_ ? Access::update : Access::read);
+    need_wall_volumes<Dim>(n, "soil", walls_);
     return n;
   }
 
@@ -106,6 +111,7 @@ class SoilReinitialization final : public Effect<Dim> {
   }
 
  private:
+  using Soil = packed::RestingSoil<Dim>;
   struct Around {
     double number = 0, divergence = 0;
     Vec<Dim> gradient = Vec<Dim>::Zero();
@@ -123,9 +129,8 @@ class SoilReinitialization final : public Effect<Dim> {
     const Pair pair{soil_kernel(*soil_)};
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& records = world.records("soil").template get<T>();
-      parallel_for(soil_->size(),
-                   [&](Index i) { records[i][soil_slot::volume] = static_cast<T>(rest(i)); });
+      const auto records = write_records<Soil, T>(world, "soil");
+      parallel_for(soil_->size(), [&](Index i) { records[i].put(Soil::volume, rest(i)); });
       const auto keep = [&](Index i, const auto& s) {
         Around& a = around_[static_cast<std::size_t>(i)];
         a.number += s.number;
@@ -137,23 +142,23 @@ class SoilReinitialization final : public Effect<Dim> {
       gather<Pair::template Sums>(world.list("soil", "soil"), records, records, pair, keep);
       for (const std::string& set : walls_)
         gather<Pair::template Sums>(world.list("soil", set), records,
-                                    world.records(set).template get<T>(), pair, keep);
+                                    read_records<packed::Wall<Dim>, T>(world, set), pair, keep);
     });
     if (world.parameters().numerics.volume_fraction_by_summation) {
       auto& n = soil_->scalar(fields::volume_fraction);
-      auto& crowding = soil_->scalar(fields::crowding);
+      auto& ratio = soil_->scalar(fields::number_density_ratio);
       const double self = Kernel<Dim>(soil_->smoothing_length()).w(0.0);
       // Of the neighborhood, the corner of a block has 1/4 in 2D, 1/8 in 3D.
       const double alone = self * std::pow(soil_->spacing(), Dim) / lattice_,
                    detached = alone + 0.8 / (1 << Dim) * (1 - alone);
       parallel_for(soil_->size(), [&](Index i) {
-        crowding[i] = (around_[static_cast<std::size_t>(i)].number + self * rest(i)) / lattice_;
-        const double summed = n0[i] * crowding[i];
+        ratio[i] = (around_[static_cast<std::size_t>(i)].number + self * rest(i)) / lattice_;
+        const double summed = n0[i] * ratio[i];
         // Grains that come apart leave the range of each other's kernels with the volume fraction
         // they had, and would meet at that range again as if they touched. With fewer neighbors
         // than at the corner of a block one is no part of a skeleton any more, and as loose as it
         // looks.
-        if (crowding[i] < detached) n[i] = std::min(n[i], summed);
+        if (ratio[i] < detached) n[i] = std::min(n[i], summed);
         // A sum that falls short is a surface or a splash: it keeps its volume fraction, up to the
         // factor by which it exceeds that at rest, as the density of water does.
         n[i] = summed + std::max(0.0, n[i] - summed) * n0[i] / n[i];
@@ -162,8 +167,9 @@ class SoilReinitialization final : public Effect<Dim> {
     if constexpr (Transport) shift(world);
   }
 
-  // Eq. 87 with the sign that leads away from crowded places. Particles whose kernel reaches the
-  // free surface stay: there the sum measures the cut kernel, not the arrangement (as for water).
+  // Eq. 87 with the sign that leads away from dense regions. Particles whose kernel reaches
+  // the free surface stay: there the sum measures the cut kernel, not the arrangement (as for
+  // water).
   void shift(World<Dim>& world) {
     const double h = soil_->smoothing_length();
     const double factor = 2 * world.parameters().numerics.transport_coefficient * h * h;
@@ -173,10 +179,10 @@ class SoilReinitialization final : public Effect<Dim> {
     const auto& part = soil_->tag(fields::part);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& records = world.records("soil").template get<T>();
+      const auto records = write_records<Soil, T>(world, "soil");
       parallel_for(soil_->size(), [&](Index i) {
         surface[i] = -around_[static_cast<std::size_t>(i)].divergence < 0.75 * Dim ? 1 : 0;
-        records[i][soil_slot::scratch] = static_cast<T>(surface[i]);  // until predict packs again
+        records[i].put(Soil::on_surface, surface[i]);
       });
       gather<NearSurface<Dim>::template Sums>(
           world.list("soil", "soil"), records, records, NearSurface<Dim>{Kernel<Dim>(h)},

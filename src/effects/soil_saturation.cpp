@@ -8,9 +8,8 @@
 namespace sphgeo {
 namespace {
 
-/// Share of the kernel that a set fills, by the volumes in its first records or those of the pairs
-/// of water and soil.
-template <int Dim, int VolumeSlot>
+/// Share of the kernel that a set fills, by the volumes of record type R.
+template <int Dim, class R>
 struct FilledShare {
   Kernel<Dim> kernel;
   template <class T>
@@ -18,9 +17,9 @@ struct FilledShare {
     T share{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j,
+  void operator()(Sums<T>& sum, const Record<T, packed::Pore<Dim>>&, const Record<T, R>& j,
                   const LaneVec<Dim, T>&, const T& r2) const {
-    sum.share += kernel.w(r2) * j[VolumeSlot];
+    sum.share += kernel.w(r2) * j[R::volume];
   }
 };
 
@@ -47,7 +46,9 @@ class SoilSaturation final : public Effect<Dim> {
              {"water", &fields::mass, Access::read},
              {"soil", &fields::saturation, Access::write}},
             {{"soil", "water"}, {"water", "soil"}}};
-    need_walls(n, "soil", walls_);
+    need_pore_pairs<Dim>(n);
+    n.record<packed::PoreVolume<Dim>>("water", Access::scratch);
+    need_wall_volumes<Dim>(n, "soil", walls_);
     return n;
   }
 
@@ -66,21 +67,21 @@ class SoilSaturation final : public Effect<Dim> {
     parallel_for(soil_->size(), [&](Index k) { wet[k] = 0; });
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& water = pore_records<T>(world, "water");
-      const auto& soil = pore_records<T>(world, "soil");
-      for_targets(world.list("water", "soil"), [&](Index i) {
-        water[i][pore_slot::other] = static_cast<T>(m[i] / (n[i] * rho[i]));
-      });
+      using PoreVolume = packed::PoreVolume<Dim>;
+      const auto water = write_records<PoreVolume, T>(world, "water");
+      const auto soil = read_records<packed::Pore<Dim>, T>(world, "soil");
+      for_targets(world.list("water", "soil"),
+                  [&](Index i) { water[i].put(PoreVolume::volume, m[i] / (n[i] * rho[i])); });
       for (const std::string& set : walls_) {
-        using Pair = FilledShare<Dim, wall_slot::volume>;
+        using Pair = FilledShare<Dim, packed::Wall<Dim>>;
         gather<Pair::template Sums>(
-            world.list("soil", set), soil, world.records(set).template get<T>(), Pair{kernel},
-            [&](Index k, const auto& s) {
+            world.list("soil", set), soil, read_records<packed::Wall<Dim>, T>(world, set),
+            Pair{kernel}, [&](Index k, const auto& s) {
               inside[static_cast<std::size_t>(k)] =
                   std::max(0.1, inside[static_cast<std::size_t>(k)] - s.share);
             });
       }
-      using Pair = FilledShare<Dim, pore_slot::other>;
+      using Pair = FilledShare<Dim, PoreVolume>;
       gather<Pair::template Sums>(
           world.list("soil", "water"), soil, water, Pair{kernel}, [&](Index k, const auto& s) {
             wet[k] = std::min(1.0, s.share / inside[static_cast<std::size_t>(k)]);

@@ -5,7 +5,7 @@
 namespace sphgeo {
 namespace {
 
-/// Mean pressure and volume of the state at hand, for whoever looks at it between two steps.
+/// Mean pressure and volume of the current state, for observers between two steps.
 template <int Dim>
 class SoilState final : public Effect<Dim> {
  public:
@@ -15,12 +15,14 @@ class SoilState final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("soil")) return {"there is no soil"};
-    return {std::make_unique<SoilState>(), "there is soil"};
+    return {std::make_unique<SoilState>(soil_parameters_used(world)), "there is soil"};
   }
+
+  explicit SoilState(bool parameters) : parameters_(parameters) {}
 
   std::string acts_on() const override { return "soil"; }
   Needs needs() const override {
-    return {{{"soil", &fields::volume_fraction, Access::read},
+    Needs n{{{"soil", &fields::volume_fraction, Access::read},
              {"soil", &fields::mass, Access::read},
              {"soil", &fields::stress, Access::read},
              {"soil", &fields::gradient_correction, Access::read},
@@ -28,6 +30,8 @@ class SoilState final : public Effect<Dim> {
              {"soil", &fields::pressure, Access::write},
              {"soil", &fields::volume, Access::write}},
             {}};
+    need_soil_packing<Dim>(n, parameters_);
+    return n;
   }
   void prepare(World<Dim>& world) override { soil_ = &world.set("soil"); }
   void apply(World<Dim>& world) override {
@@ -51,6 +55,7 @@ class SoilState final : public Effect<Dim> {
   }
 
  private:
+  bool parameters_;
   ParticleSet<Dim>* soil_ = nullptr;
 };
 

@@ -31,13 +31,13 @@ struct GradientSums {
 
 template <int Dim>
 struct GradientPair {
+  using Soil = packed::SoilState<Dim>;
   Kernel<Dim> kernel;
   template <class T>
-  void operator()(typename GradientSums<Dim>::template Sums<T>& sum, const Record<Dim, T>& i,
-                  const Record<Dim, T>& j, const LaneVec<Dim, T>& r, const T& r2) const {
-    using namespace soil_slot;
-    const T gradient = kernel.dw_over_r(r2) * j[volume];
-    GradientSums<Dim>::add(sum, j.vec(velocity) - i.vec(velocity), r, gradient);
+  void operator()(typename GradientSums<Dim>::template Sums<T>& sum, const Record<T, Soil>& i,
+                  const Record<T, Soil>& j, const LaneVec<Dim, T>& r, const T& r2) const {
+    const T gradient = kernel.dw_over_r(r2) * j[Soil::volume];
+    GradientSums<Dim>::add(sum, j.vec(Soil::velocity) - i.vec(Soil::velocity), r, gradient);
   }
 };
 
@@ -45,11 +45,12 @@ template <int Dim>
 struct WallGradientPair {
   SoilWallPair<Dim> wall;
   template <class T>
-  void operator()(typename GradientSums<Dim>::template Sums<T>& sum, const Record<Dim, T>& i,
-                  const Record<Dim, T, 2>& j, const LaneVec<Dim, T>& r, const T& r2) const {
+  void operator()(typename GradientSums<Dim>::template Sums<T>& sum,
+                  const Record<T, packed::SoilState<Dim>>& i, const WallRecord<Dim, T>& j,
+                  const LaneVec<Dim, T>& r, const T& r2) const {
     // Mirrored velocities tell how the velocity changes across the wall, and nothing of how it
     // changes along it, which would count as no change at all if the whole of r were used here.
-    const LaneVec<Dim, T> n = j.vec(wall_slot::normal);
+    const LaneVec<Dim, T> n = j.vec(packed::WallSurface<Dim>::normal);
     const T r_n = dot(r, n);
     GradientSums<Dim>::add(sum, SoilWallPair<Dim>::mirrored(i, j), r_n * n, wall.slope(j, r_n, r2));
   }
@@ -73,8 +74,8 @@ class SoilStress final : public Effect<Dim> {
   explicit SoilStress(const World<Dim>& world)
       : walls_(wall_sets(world)),
         wetted_(world.set("soil").has(fields::saturation)),
-        crowded_(world.parameters().soil.deformable &&
-                 world.parameters().numerics.volume_fraction_by_summation) {}
+        follows_number_density_(world.parameters().soil.deformable &&
+                                world.parameters().numerics.volume_fraction_by_summation) {}
 
   std::string acts_on() const override {
     return !walls_.empty() ? "soil, also near walls" : "soil";
@@ -90,9 +91,15 @@ class SoilStress final : public Effect<Dim> {
              {"soil", &fields::plastic_work, Access::update},
              {"soil", &fields::volume_fraction_rate, Access::write}},
             {{"soil", "soil"}}};
-    if (crowded_) n.fields.push_back({"soil", &fields::crowding, Access::read});
+    if (follows_number_density_)
+      n.fields.push_back({"soil", &fields::number_density_ratio, Access::read});
     if (wetted_) n.fields.push_back({"soil", &fields::saturation, Access::read});
-    need_walls(n, "soil", walls_);
+    n.record<Position<Dim>>("soil", Access::read);
+    n.record<Soil>("soil", Access::read, Soil::volume, Soil::velocity);
+    for (const std::string& set : walls_) {
+      need_wall_records<Dim>(n, set);
+      n.lists.push_back({"soil", set});
+    }
     return n;
   }
   void prepare(World<Dim>& world) override { soil_ = &world.set("soil"); }
@@ -104,12 +111,13 @@ class SoilStress final : public Effect<Dim> {
  private:
   using Sums = typename GradientSums<Dim>::template Sums<double>;
   using L = Lanes<double>;
+  using Soil = packed::SoilState<Dim>;
 
   template <class T>
   void run(World<Dim>& world) {
     const Kernel<Dim> kernel = soil_kernel(*soil_);
     const SoilParameters& parts = world.parameters().soil;
-    const auto records = view(world.records("soil", 0).template get<T>());
+    const auto records = read_records<Soil, T>(world, "soil");
     const NeighborList& soil_list = world.list("soil", "soil");
     parallel_blocks(soil_->size(), block_size, [&](Index first, Index end, Index b) {
       std::array<Sums, block_size> sums{};
@@ -119,8 +127,7 @@ class SoilStress final : public Effect<Dim> {
                                                      [&](Index i, const Sums& s) { at(i) = s; });
       for (const std::string& set : walls_)
         gather_block<GradientSums<Dim>::template Sums>(
-            world.list("soil", set), b, records,
-            with(world.records(set, 0).template get<T>(), world.records(set, 1).template get<T>()),
+            world.list("soil", set), b, records, wall_records<T>(world, set),
             WallGradientPair<Dim>{SoilWallPair<Dim>(world, *soil_)},
             [&](Index i, const Sums& s) { add(at(i), s); });
       finish_block(world, parts, sums.data(), first, end - first);
@@ -143,7 +150,8 @@ class SoilStress final : public Effect<Dim> {
     // lose sight of it: they see the smooth part of the motion, and sand that has flowed would end
     // 20 to 40 % denser than it started. Margin and time are chosen: slow against sound, fast
     // against the flow.
-    const Field<double>* crowding = crowded_ ? &soil_->scalar(fields::crowding) : nullptr;
+    const Field<double>* number_density_ratio =
+        follows_number_density_ ? &soil_->scalar(fields::number_density_ratio) : nullptr;
     const double per_time = parts.fastest / (20 * soil_->smoothing_length());
     const bool corrected =
         world.parameters().numerics.soil_velocity_gradient == VelocityGradient::corrected;
@@ -187,10 +195,10 @@ class SoilStress final : public Effect<Dim> {
       correct(sum, inverse, gradient);
       L rates[6];
       symmetric_part(gradient, rates);
-      if (crowding) {
+      if (number_density_ratio) {
         L excess;
         for (int lane = 0; lane < L::width; ++lane)
-          excess.raw[lane] = (*crowding)[first + of(lane)] - (1 + crowding_margin);
+          excess.raw[lane] = (*number_density_ratio)[first + of(lane)] - (1 + disorder_margin);
         excess = max(L(0.0), excess + (s[0] + s[1] + s[2]) / (L(3.0) * m.bulk));
         for (int a = 0; a < 3; ++a) gradient[a][a] -= L(per_time / 3) * excess;
       }
@@ -239,10 +247,10 @@ class SoilStress final : public Effect<Dim> {
   // 0.9 of it.
   static constexpr double loose = 0.6;
   // Of the sum over neighbors, by disorder alone.
-  static constexpr double crowding_margin = 0.05;
+  static constexpr double disorder_margin = 0.05;
 
   std::vector<std::string> walls_;  // sets of walls
-  bool wetted_, crowded_;
+  bool wetted_, follows_number_density_;
   ParticleSet<Dim>* soil_ = nullptr;
 };
 

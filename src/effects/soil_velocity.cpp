@@ -4,10 +4,10 @@
 namespace sphgeo {
 namespace {
 
-/// Velocity of the soil at the water (Eq. 57), and that of the mixture, n^w v^w + n^s v^s, in the
-/// records of the water: the divergence of Eq. 58 is taken of it.
+/// Velocity of the soil at the water (Eq. 57), and that of the mixture, n^w v^w + n^s v^s, packed
+/// in place of that of the water: the divergence of Eq. 58 is taken of it.
 ///
-/// Eq. 58 prints the bracket n_i v_i - n_j v_j - (1 - n_i) v_i^s, which does not vanish when water
+/// Eq. 58 has the bracket n_i v_i - n_j v_j - (1 - n_i) v_i^s, which does not vanish when water
 /// and soil move together. Eq. 23 asks for the divergence of n^w v^w + n^s v^s, whose difference
 /// between two water particles does.
 template <int Dim>
@@ -33,7 +33,14 @@ class SoilVelocity final : public Effect<Dim> {
              {"water", &fields::velocity, Access::read},
              {"water", &fields::soil_velocity, Access::write}},
             {{"water", "soil"}}};
-    if (moves_) n.fields.push_back({"soil", &fields::velocity, Access::read});
+    // Where no soil is, the mixture is the water.
+    n.record<packed::WaterState<Dim>>("water", Access::read, packed::WaterState<Dim>::velocity);
+    n.record<packed::Mixture<Dim>>("water", Access::write);
+    if (moves_) {
+      n.fields.push_back({"soil", &fields::velocity, Access::read});
+      need_pore_pairs<Dim>(n);
+      n.record<packed::PoreVelocity<Dim>>("soil", Access::scratch);
+    }
     return n;
   }
 
@@ -50,26 +57,27 @@ class SoilVelocity final : public Effect<Dim> {
     if (moves_) {
       const auto& of_soil = soil_->vector(fields::velocity);
       world.with_pair_precision([&](auto number) {
-        auto& records = pore_records<decltype(number)>(world, "soil");
-        parallel_for(soil_->size(), [&](Index k) { put_vector<Dim>(records[k], of_soil[k]); });
+        const auto records = write_records<Velocity, decltype(number)>(world, "soil");
+        parallel_for(soil_->size(), [&](Index k) { records[k].put(Velocity::vector, of_soil[k]); });
       });
       const auto& grains = water_->scalar(fields::soil_sum);
-      gather_vectors(world, "water", "soil", [&](Index i, const Vec<Dim>& sum) {
+      gather_vectors<Velocity>(world, "water", "soil", [&](Index i, const Vec<Dim>& sum) {
         if (grains[i] > 0) soil_velocity[i] = sum / grains[i];
       });
     }
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& records = world.records("water").template get<T>();
+      const auto records = write_records<packed::Mixture<Dim>, T>(world, "water");
       for_targets(world.list("water", "soil"), [&](Index i) {
         const Vec<Dim> flux = n[i] * v[i] + (1 - n[i]) * soil_velocity[i];
-        for (int k = 0; k < Dim; ++k)
-          records[i][water_slot::velocity + k] = static_cast<T>(flux[k]);
+        records[i].put(packed::Mixture<Dim>::velocity, flux);
       });
     });
   }
 
  private:
+  using Velocity = packed::PoreVelocity<Dim>;
+
   bool moves_;
   ParticleSet<Dim>* water_ = nullptr;
   ParticleSet<Dim>* soil_ = nullptr;

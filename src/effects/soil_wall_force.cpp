@@ -14,7 +14,7 @@ struct WallForceOnSoil {
     LaneVec<Dim, T> force{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const SoilRecord<Dim, T>& i, const Record<Dim, T, 2>& j,
+  void operator()(Sums<T>& sum, const SoilRecord<Dim, T>& i, const WallRecord<Dim, T>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
     sum.force += wall.force(i, j, r, r2);
   }
@@ -39,11 +39,12 @@ class SoilWallForce final : public Effect<Dim> {
   std::string acts_on() const override { return near_walls("soil", walls_); }
   Needs needs() const override {
     Needs n{{{"soil", &fields::volume, Access::read},
-             {"soil", &fields::stress, Access::read},
              {"soil", &fields::mass, Access::read},
              {"soil", &fields::acceleration_sum, Access::add}},
-            {}};
-    need_walls(n, "soil", {walls_});
+            {{"soil", walls_}}};
+    n.record<Position<Dim>>("soil", Access::read);
+    need_soil_records<Dim>(n, Access::read, true);
+    need_wall_records<Dim>(n, walls_);
     return n;
   }
   void prepare(World<Dim>& world) override { soil_ = &world.set("soil"); }
@@ -56,13 +57,11 @@ class SoilWallForce final : public Effect<Dim> {
     const NeighborList& list = world.list("soil", walls_);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      gather<WallForceOnSoil<Dim>::template Sums>(list, stress_records<T, soil_records<Dim>>(world),
-                                                  with(world.records(walls_, 0).template get<T>(),
-                                                       world.records(walls_, 1).template get<T>()),
-                                                  pair, [&](Index i, const auto& sum) {
-                                                    sum_of_forces[i] +=
-                                                        to_vec(sum.force) * (volume[i] / m[i]);
-                                                  });
+      gather<WallForceOnSoil<Dim>::template Sums>(
+          list, soil_records<T, true>(world), wall_records<T>(world, walls_), pair,
+          [&](Index i, const auto& sum) {
+            sum_of_forces[i] += to_vec(sum.force) * (volume[i] / m[i]);
+          });
     });
   }
 

@@ -28,6 +28,10 @@ namespace sphgeo {
 /// without it sand is squeezed into the corner, and energy grows.
 template <int Dim>
 struct SoilWallPair {
+  using Soil = packed::SoilState<Dim>;
+  using Parameters = packed::SoilContact<Dim>;
+  using Wall = packed::Wall<Dim>;
+  using Surface = packed::WallSurface<Dim>;
   Kernel<Dim> kernel;
   double limiter;      ///< xi^s
   double near;         ///< distance below which a particle of a wall is too close, m
@@ -42,65 +46,64 @@ struct SoilWallPair {
         per_step(1 / std::max(world.clock.dt_acoustic, 1e-12)) {}
 
   /// Velocity of the wall's particle less that of the soil's, of the mirrored velocity of Eq. 69.
-  template <class T, int N>
-  static LaneVec<Dim, T> mirrored(const Record<Dim, T, N>& soil, const Record<Dim, T, 2>& wall) {
-    const LaneVec<Dim, T> n = wall.vec(wall_slot::normal);
-    const LaneVec<Dim, T> dv = wall.vec(wall_slot::velocity) - soil.vec(soil_slot::velocity);
-    const T sticking = wall[wall_slot::no_slip];
+  template <class T, class... R>
+  static LaneVec<Dim, T> mirrored(const Record<T, R...>& soil, const WallRecord<Dim, T>& wall) {
+    const LaneVec<Dim, T> n = wall.vec(Surface::normal);
+    const LaneVec<Dim, T> dv = wall.vec(Wall::velocity) - soil.vec(Soil::velocity);
+    const T sticking = wall[Wall::no_slip];
     return T(2) * (sticking * dv + ((T(1) - sticking) * dot(dv, n)) * n);
   }
 
   /// W'(r) V / r of a wall particle that carries stress. Behind the surface of this particle, as
   /// beside a rim, it has nothing to say.
   template <class T>
-  T slope(const Record<Dim, T, 2>& wall, const T& r_n, const T& r2) const {
-    return select(r_n > T(0),
-                  kernel.dw_over_r(r2) * wall[wall_slot::volume] * wall[wall_slot::face], T(0));
+  T slope(const WallRecord<Dim, T>& wall, const T& r_n, const T& r2) const {
+    return select(r_n > T(0), kernel.dw_over_r(r2) * wall[Wall::volume] * wall[Surface::face],
+                  T(0));
   }
 
   /// Force of the wall on the soil per unit volume of the soil; r = r_soil - r_wall.
   template <class T>
-  LaneVec<Dim, T> force(const SoilRecord<Dim, T>& soil, const Record<Dim, T, 2>& wall,
+  LaneVec<Dim, T> force(const SoilRecord<Dim, T>& soil, const WallRecord<Dim, T>& wall,
                         const LaneVec<Dim, T>& r, const T& r2) const {
-    namespace slot = soil_slot;
-    const LaneVec<Dim, T> n = wall.vec(wall_slot::normal);
+    const LaneVec<Dim, T> n = wall.vec(Surface::normal);
     const T r_n = dot(r, n);
-    const T face = wall[wall_slot::face];
-    const T gradient = select(r_n > T(0), kernel.dw_over_r(r2) * wall[wall_slot::volume], T(0));
-    const T sticking = wall[wall_slot::no_slip];
+    const T face = wall[Surface::face];
+    const T gradient = select(r_n > T(0), kernel.dw_over_r(r2) * wall[Wall::volume], T(0));
+    const T sticking = wall[Wall::no_slip];
     // A layer of sand that has spread to less than the size of a particle bears no stress that
     // could hold it up: a particle that comes too near to one of the wall meets the bulk modulus,
     // along the line between them, so that it is as right beside a rim or an edge as over a plane.
     // In a square of four it comes down to the level of the surface.
-    const T bulk = soil[slot::impedance<Dim>] * soil[slot::impedance<Dim>] /
-                   max(T(1e-30), soil[slot::density<Dim>]);
+    const T bulk = soil[Parameters::impedance] * soil[Parameters::impedance] /
+                   max(T(1e-30), soil[Parameters::density]);
     // Solids may be finer or coarser than the soil: the mean of both.
-    const T apart = T(near) + T(0.5) * wall[wall_slot::yields] * (wall[wall_slot::near] - T(near));
+    const T apart = T(near) + T(0.5) * wall[Surface::deformable] * (wall[Surface::near] - T(near));
     const T contact =
         bulk * (T(per_spacing) * max(T(0), apart * (T(0.7) + T(0.3) * face) - length(r2)));
     const T height = face * max(T(0), r_n);
-    const T rise = soil[slot::borne<Dim>] * soil[slot::density<Dim>] *
-                   max(T(0), wall[wall_slot::push]) * height;
+    const T rise = soil[packed::SoilWeight<Dim>::borne] * soil[Parameters::density] *
+                   max(T(0), wall[Surface::push]) * height;
     T tensor[Dim * Dim];
-    unpack_stress(soil, tensor);
+    unpack_stress<Dim>(soil, tensor);
     const LaneVec<Dim, T> on_wall = times(tensor, (face * r_n) * n);
     LaneVec<Dim, T> f = T(2) * (sticking * on_wall + ((T(1) - sticking) * dot(on_wall, n)) * n) -
                         (rise * r_n) * n - contact * r;
     // Coulomb friction of what the wall bears beside the stress: no more than what stops the
     // particle within the step.
-    const LaneVec<Dim, T> dv = soil.vec(slot::velocity) - wall.vec(wall_slot::velocity);
+    const LaneVec<Dim, T> dv = soil.vec(Soil::velocity) - wall.vec(Wall::velocity);
     const LaneVec<Dim, T> slip = dv - dot(dv, n) * n;
     const T slip2 = dot(slip, slip);
-    const T grip = min(soil[slot::friction<Dim>] * (rise + contact) * inverse_length(slip2),
-                       soil[slot::density<Dim>] * T(per_step) * max(T(0), r_n));
+    const T grip = min(soil[Parameters::friction] * (rise + contact) * inverse_length(slip2),
+                       soil[Parameters::density] * T(per_step) * max(T(0), r_n));
     f += (sticking * grip * r_n) * slip;
     // Dissipation along the normal (Eqs. 54, 69): U_L - U_R = -2 (v - v_wall) . n.
-    const T closing =
-        max(T(0), T(2) * dot(wall.vec(wall_slot::velocity) - soil.vec(slot::velocity), n));
-    const T beta = min(
-        T(limiter) * soil[slot::density<Dim>] / max(T(1e-30), soil[slot::impedance<Dim>]) * closing,
-        T(1));
-    return gradient * f - (beta * soil[slot::impedance<Dim>] * closing * gradient * length(r2)) * n;
+    const T closing = max(T(0), T(2) * dot(wall.vec(Wall::velocity) - soil.vec(Soil::velocity), n));
+    const T beta = min(T(limiter) * soil[Parameters::density] /
+                           max(T(1e-30), soil[Parameters::impedance]) * closing,
+                       T(1));
+    return gradient * f -
+           (beta * soil[Parameters::impedance] * closing * gradient * length(r2)) * n;
   }
 };
 
@@ -114,9 +117,9 @@ struct SoilForceOnWall {
     LaneVec<Dim, T> force{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T, 2>& i, const SoilRecord<Dim, T>& j,
+  void operator()(Sums<T>& sum, const WallRecord<Dim, T>& i, const SoilRecord<Dim, T>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
-    sum.force -= j[soil_slot::volume] * wall.force(j, i, T(-1) * r, r2);
+    sum.force -= j[packed::SoilState<Dim>::volume] * wall.force(j, i, T(-1) * r, r2);
   }
 };
 

@@ -24,12 +24,12 @@ class SoilWallReaction final : public Effect<Dim> {
 
   std::string acts_on() const override { return "walls near soil"; }
   Needs needs() const override {
-    return {{{"soil", &fields::stress, Access::read},
-             {"soil", &fields::volume, Access::read},
-             {"soil", &fields::pressure, Access::read},
-             {"soil", &fields::mass, Access::read},
-             {"walls", &fields::wall_force, adds_ ? Access::add : Access::write}},
+    Needs n{{{"walls", &fields::wall_force, adds_ ? Access::add : Access::write}},
             {{"walls", "soil"}}};
+    n.record<Position<Dim>>("soil", Access::read);
+    need_soil_records<Dim>(n, Access::read, true);
+    need_wall_records<Dim>(n, "walls");
+    return n;
   }
   void prepare(World<Dim>& world) override {
     walls_ = &world.set("walls");
@@ -43,10 +43,8 @@ class SoilWallReaction final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       gather<SoilForceOnWall<Dim>::template Sums>(
-          world.list("walls", "soil"),
-          with(world.records("walls", 0).template get<T>(),
-               world.records("walls", 1).template get<T>()),
-          stress_records<T, soil_records<Dim>>(world), pair,
+          world.list("walls", "soil"), wall_records<T>(world, "walls"),
+          soil_records<T, true>(world), pair,
           [&](Index i, const auto& sum) { force[i] += to_vec(sum.force); });
     });
   }

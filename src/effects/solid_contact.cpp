@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "core/parallel.h"
+#include "effects/interface.h"
 #include "effects/meeting_bodies.h"
-#include "effects/skin.h"
 #include "effects/wall_touch.h"
 #include "sph/cell_grid.h"
 #include "sph/neighbor_list.h"
@@ -13,7 +13,7 @@
 namespace sphgeo {
 namespace {
 
-/// What a contact of two solids needs of a particle of the skin.
+/// What a contact of two solids needs of a interface particle.
 template <int Dim>
 struct ContactPoint {
   Vec<Dim> x = Vec<Dim>::Zero(), v = Vec<Dim>::Zero();
@@ -31,7 +31,7 @@ struct ContactPoint {
 /// forces are the gradient of an energy, 1/2 rho_0 c_0^2 V (sum W V)^2 for every particle: a
 /// contact without friction and damping gives back what it took. Bodies that start closer than 2
 /// h^c would be pushed apart by their mere presence: for them the reach is the gap of their
-/// particles at rest, so that they touch and are at ease.
+/// particles at rest, so that they touch without force.
 ///
 /// Walls mirror the pressure of the solid, but only of what the sum exceeds the one of a plane wall
 /// that is touched: surface on surface, or as close as the body starts. A reach as short as the gap
@@ -47,7 +47,7 @@ class SolidContact final : public Effect<Dim> {
         false,           "solids pass through each other, through themselves and through walls"};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    if (!world.find("skin")) return {"no solid can meet anything"};
+    if (!world.find("interface")) return {"no solid can meet anything"};
     std::size_t solids = 0;
     bool folds = false;
     for (const SolidPart& p : world.parameters().solids.of)
@@ -64,30 +64,30 @@ class SolidContact final : public Effect<Dim> {
   explicit SolidContact(const World<Dim>& world)
       : solids_(solid_sets(world)), walls_(world.find("walls") != nullptr) {}
 
-  std::string acts_on() const override { return "skin"; }
+  std::string acts_on() const override { return "interface"; }
   Needs needs() const override {
-    Needs n{{{"skin", &fields::position, Access::read},
-             {"skin", &fields::contact_force, Access::write},
-             {"skin", &fields::contact_energy, Access::write}},
+    Needs n{{{"interface", &fields::position, Access::read},
+             {"interface", &fields::contact_force, Access::write},
+             {"interface", &fields::contact_energy, Access::write}},
             {}};
     for (const std::string& set : solids_) {
       n.fields.push_back({set, &fields::acceleration_sum, Access::add});
       n.fields.push_back({set, &fields::reference_position, Access::read});
     }
-    if (walls_) n.lists.push_back({"skin", "walls"});
+    if (walls_) n.lists.push_back({"interface", "walls"});
     return n;
   }
 
   void apply(World<Dim>& world) override {
     if (arrangement_ != world.arrangement()) find_partners(world);
-    auto& f = world.set("skin").vector(fields::contact_force);
-    auto& energy = world.set("skin").scalar(fields::contact_energy);
+    auto& f = world.set("interface").vector(fields::contact_force);
+    auto& energy = world.set("interface").scalar(fields::contact_energy);
     parallel_for(f.size(), [&](Index k) {
       f[k].setZero();
       energy[k] = 0;
     });
     if (!near_.empty()) between_solids(world);
-    if (walls_ && world.list("skin", "walls").active() > 0) with_walls(world);
+    if (walls_ && world.list("interface", "walls").active() > 0) with_walls(world);
   }
 
   std::size_t bytes() const override {
@@ -97,8 +97,8 @@ class SolidContact final : public Effect<Dim> {
   }
 
  private:
-  ContactPoint<Dim> point_of(Index skin) const {
-    const auto& [of, i] = map_.at(skin);
+  ContactPoint<Dim> point_of(Index interface) const {
+    const auto& [of, i] = map_.at(interface);
     // What is the same for a whole body was set when the reaches were found.
     ContactPoint<Dim> p = bodies_[static_cast<std::size_t>(of->part[i])];
     p.x = of->position[i];
@@ -115,7 +115,7 @@ class SolidContact final : public Effect<Dim> {
   void between_solids(World<Dim>& world);
   void see_walls(World<Dim>& world);
   void with_walls(World<Dim>& world);
-  void touch_walls(Index skin, double dt, Field<Vec<Dim>>& seen_force, Field<double>& energy);
+  void touch_walls(Index interface, double dt, Field<Vec<Dim>>& seen_force, Field<double>& energy);
 
   // Force on `a` by `b`, and how it grows with the pressures of both.
   Vec<Dim> force(const ContactPoint<Dim>& a, const ContactPoint<Dim>& b, double pressures,
@@ -126,13 +126,13 @@ class SolidContact final : public Effect<Dim> {
 
   std::vector<std::string> solids_;
   bool walls_;
-  SkinMap<Dim> map_;
+  InterfaceMap<Dim> map_;
   long arrangement_ = -1;
   std::vector<ContactPoint<Dim>> bodies_;  // what is the same for all particles of a body
   std::vector<WallTouch<Dim>> touch_;      // by body
-  std::vector<WallSums<Dim>> walls_seen_;  // by particle of the skin
+  std::vector<WallSums<Dim>> walls_seen_;  // by interface particle
   std::vector<double> bulk_;               // by id of the wall's particle
-  std::vector<Index> near_;                // particles of the skin that may touch another solid
+  std::vector<Index> near_;                // interface particles that may touch another solid
   std::vector<ContactPoint<Dim>> points_;  // of them
   std::vector<double> sum_;                // sum of W V at them
   NeighborList list_;                      // among them
@@ -140,15 +140,15 @@ class SolidContact final : public Effect<Dim> {
 
 template <int Dim>
 void SolidContact<Dim>::find_reaches(const World<Dim>& world) {
-  const ParticleSet<Dim>& skin = world.set("skin");
+  const ParticleSet<Dim>& interface = world.set("interface");
   bodies_.assign(world.parameters().solids.of.size(), {});
-  std::vector<Vec<Dim>> at(static_cast<std::size_t>(skin.size()));
-  parallel_for(skin.size(), [&](Index k) {
+  std::vector<Vec<Dim>> at(static_cast<std::size_t>(interface.size()));
+  parallel_for(interface.size(), [&](Index k) {
     const auto& [of, i] = map_.at(k);
     at[static_cast<std::size_t>(k)] = of->reference_position[i];
   });
   double most = 0;
-  const auto frame = world.grid("skin").frame();
+  const auto frame = world.grid("interface").frame();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const SolidPart& p = world.parameters().solids.of[b];
     if (!p.is_solid) continue;
@@ -160,9 +160,9 @@ void SolidContact<Dim>::find_reaches(const World<Dim>& world) {
   }
   CellGrid<Dim> grid;
   grid.build(at, frame, most);
-  const auto& part = skin.tag(fields::part);
+  const auto& part = interface.tag(fields::part);
   std::vector<double> nearest(at.size(), std::numeric_limits<double>::infinity());
-  parallel_for(skin.size(), [&](Index k) {
+  parallel_for(interface.size(), [&](Index k) {
     if (clamped(map_.at(k))) return;
     double& least = nearest[static_cast<std::size_t>(k)];
     grid.for_each_in_reach(at[static_cast<std::size_t>(k)], most, [&](Index j, double r2) {
@@ -194,13 +194,14 @@ void SolidContact<Dim>::find_partners(World<Dim>& world) {
   arrangement_ = world.arrangement();
   map_.update(world);
   if (bodies_.empty()) find_reaches(world);
-  const ParticleSet<Dim>& skin = world.set("skin");
+  const ParticleSet<Dim>& interface = world.set("interface");
   // As they were at the rearrangement, also for a run that goes on after it: the order of pairs is
   // that of cells.
-  const std::vector<Vec<Dim>> x = world.arranged_places("skin");
-  const auto& part = skin.tag(fields::part);
-  // Each body comes 0.2 of its h closer in an advection step; the skin's h is 1.25 of the largest.
-  const double radius = 2 * skin.smoothing_length();
+  const std::vector<Vec<Dim>> x = world.arranged_positions("interface");
+  const auto& part = interface.tag(fields::part);
+  // Each body comes 0.2 of its h closer in an advection step; the interface's h is 1.25 of the
+  // largest.
+  const double radius = 2 * interface.smoothing_length();
   const auto near = meeting_particles<Dim>(world.parameters().solids, part, x, radius);
   near_.assign(near.begin(), near.end());
   if (near_.empty()) return;
@@ -209,7 +210,7 @@ void SolidContact<Dim>::find_partners(World<Dim>& world) {
     at[static_cast<std::size_t>(k)] = x[near[static_cast<std::size_t>(k)]];
   });
   CellGrid<Dim> grid;
-  grid.build(at, world.grid("skin").frame(), radius);
+  grid.build(at, world.grid("interface").frame(), radius);
   list_.template build<Dim>(at, grid, radius, Pairing::within);
   list_.filter([&](Index a, Index b) {
     return may_touch(world, near_[static_cast<std::size_t>(a)], near_[static_cast<std::size_t>(b)]);
@@ -250,8 +251,8 @@ void SolidContact<Dim>::between_solids(World<Dim>& world) {
   parallel_for(static_cast<Index>(n), [&](Index k) {
     points_[static_cast<std::size_t>(k)] = point_of(near_[static_cast<std::size_t>(k)]);
   });
-  auto& energy = world.set("skin").scalar(fields::contact_energy);
-  auto& seen = world.set("skin").vector(fields::contact_force);
+  auto& energy = world.set("interface").scalar(fields::contact_energy);
+  auto& seen = world.set("interface").vector(fields::contact_force);
   const auto blocks = list_.blocks();
   const auto for_pairs = [&](auto&& begin, auto&& pair, auto&& end) {
     parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
@@ -296,15 +297,15 @@ void SolidContact<Dim>::see_walls(World<Dim>& world) {
   const auto& u = walls.vector(fields::velocity);
   const auto& id = walls.ids();
   const double volume = std::pow(walls.spacing(), Dim);
-  const auto blocks = world.list("skin", "walls").blocks();
-  walls_seen_.resize(static_cast<std::size_t>(world.set("skin").size()));
+  const auto blocks = world.list("interface", "walls").blocks();
+  walls_seen_.resize(static_cast<std::size_t>(world.set("interface").size()));
   for (WallTouch<Dim>& t : touch_) t.touching = 0;
   parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
     const auto& block = blocks[static_cast<std::size_t>(b)];
     for (std::size_t k = 0; k < block.size(); ++k) {
-      const Index skin = block.targets[k];
-      WallSums<Dim>& seen = walls_seen_[static_cast<std::size_t>(skin)] = {};
-      const SolidParticle<Dim>& p = map_.at(skin);
+      const Index interface = block.targets[k];
+      WallSums<Dim>& seen = walls_seen_[static_cast<std::size_t>(interface)] = {};
+      const SolidParticle<Dim>& p = map_.at(interface);
       if (clamped(p)) continue;
       WallTouch<Dim>& touch = touch_[static_cast<std::size_t>(p.of->part[p.i])];
       const Kernel<Dim>& kernel = touch.kernel;
@@ -322,7 +323,7 @@ void SolidContact<Dim>::see_walls(World<Dim>& world) {
       if (seen.sum <= 0) continue;
       seen.velocity /= seen.sum;
       seen.bulk /= seen.sum;
-      if (seen.sum > touch.at_ease * seen.bulk)
+      if (seen.sum > touch.reference_overlap * seen.bulk)
         std::atomic_ref(touch.touching).fetch_add(1);  // a count depends on no order
     }
   });
@@ -332,27 +333,28 @@ template <int Dim>
 void SolidContact<Dim>::with_walls(World<Dim>& world) {
   see_walls(world);
   const double dt = world.clock.dt_solid;
-  auto& energy = world.set("skin").scalar(fields::contact_energy);
-  auto& seen_force = world.set("skin").vector(fields::contact_force);
-  const auto blocks = world.list("skin", "walls").blocks();
+  auto& energy = world.set("interface").scalar(fields::contact_energy);
+  auto& seen_force = world.set("interface").vector(fields::contact_force);
+  const auto blocks = world.list("interface", "walls").blocks();
   parallel_blocks(static_cast<Index>(blocks.size()), 1, [&](Index b, Index, Index) {
-    for (const std::uint32_t skin : blocks[static_cast<std::size_t>(b)].targets)
-      touch_walls(static_cast<Index>(skin), dt, seen_force, energy);
+    for (const std::uint32_t interface : blocks[static_cast<std::size_t>(b)].targets)
+      touch_walls(static_cast<Index>(interface), dt, seen_force, energy);
   });
 }
 
 template <int Dim>
-void SolidContact<Dim>::touch_walls(Index skin, double dt, Field<Vec<Dim>>& seen_force,
+void SolidContact<Dim>::touch_walls(Index interface, double dt, Field<Vec<Dim>>& seen_force,
                                     Field<double>& energy) {
-  const WallSums<Dim>& seen = walls_seen_[static_cast<std::size_t>(skin)];
-  const auto& [of, i] = map_.at(skin);
+  const WallSums<Dim>& seen = walls_seen_[static_cast<std::size_t>(interface)];
+  const auto& [of, i] = map_.at(interface);
   const WallTouch<Dim>& body = touch_[static_cast<std::size_t>(of->part[i])];
-  const double excess = seen.sum - body.at_ease * seen.bulk, steepness = seen.gradient.norm();
+  const double excess = seen.sum - body.reference_overlap * seen.bulk,
+               steepness = seen.gradient.norm();
   if (excess <= 0 || steepness <= 0) return;
-  const ContactPoint<Dim> p = point_of(skin);
+  const ContactPoint<Dim> p = point_of(interface);
   const Vec<Dim> n = -seen.gradient / steepness, dv = p.v - seen.velocity;
   const double closing = -dv.dot(n);
-  // What the sum is at ease is left out: with this the pressure of Eq. 79 at half a spacing, all of
+  // The reference overlap is subtracted: with this the pressure of Eq. 79 at half a spacing, all of
   // the sum in the kernel of solids.
   const double stiffness = 3 * p.stiffness;
   const double pressure = 2 * (stiffness * excess + p.impedance * std::max(0.0, closing));
@@ -368,8 +370,8 @@ void SolidContact<Dim>::touch_walls(Index skin, double dt, Field<Vec<Dim>>& seen
     f -= std::min(p.friction * push / speed, most) * slip;
   }
   (*of->acceleration_sum)[i] += f / p.mass;
-  seen_force[skin] += f;
-  energy[skin] += stiffness * p.volume * excess * excess;
+  seen_force[interface] += f;
+  energy[interface] += stiffness * p.volume * excess * excess;
 }
 
 const RegisterEffect<SolidContact> registered_solid_contact;

@@ -14,16 +14,17 @@ struct MomentSum {
     T moment[Dim * (Dim + 1) / 2] = {};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>&,
-                  const LaneVec<Dim, T>& r, const T& r2) const {
+  void operator()(Sums<T>& sum, const Record<T, packed::Displacement<Dim>>&,
+                  const Record<T, packed::Displacement<Dim>>&, const LaneVec<Dim, T>& r,
+                  const T& r2) const {
     const T gradient = T(-1) * kernel.dw_over_r(r2);
     for (int k = 0, n = 0; k < Dim; ++k)
       for (int l = k; l < Dim; ++l, ++n) sum.moment[n] += gradient * r[k] * r[l];
   }
 };
 
-/// What follows from the places of solids at rest, once: the correction B0 of the gradient (Eq. 66)
-/// and the places in the records.
+/// What follows from the positions of solids at rest, once: the correction B0 of the gradient (Eq.
+/// 66) and the positions in the records.
 template <int Dim>
 class SolidCorrection final : public Effect<Dim> {
  public:
@@ -38,16 +39,14 @@ class SolidCorrection final : public Effect<Dim> {
 
   std::string acts_on() const override { return set_; }
   Needs needs() const override {
-    return {{{set_, &fields::reference_position, Access::read},
+    Needs n{{{set_, &fields::reference_position, Access::read},
              {set_, &fields::reference_volume, Access::read},
              {set_, &fields::reference_correction, Access::write}},
             {},
             {set_}};
-  }
-  void prepare(World<Dim>& world) override {
-    const int records =
-        1 + solid_slot::stress_records_of_solids<Dim> + (viscous_solids(world, set_) ? 1 : 0);
-    for (int k = 0; k < records; ++k) world.records(set_, k);
+    n.record<Displacement>(set_, Access::write, Displacement::position);
+    n.record<Piola>(set_, Access::write, Piola::position);
+    return n;
   }
 
   void apply(World<Dim>& world) override {
@@ -59,7 +58,7 @@ class SolidCorrection final : public Effect<Dim> {
     const MomentSum<Dim> pair{Kernel<Dim>(set.smoothing_length())};
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      const auto& records = world.records(set_, 0).template get<T>();
+      const auto records = read_records<Displacement, T>(world, set_);
       gather<MomentSum<Dim>::template Sums>(world.reference_list(set_), records, records, pair,
                                             [&](Index i, const auto& sum) {
                                               double moment[Dim * (Dim + 1) / 2];
@@ -84,16 +83,21 @@ class SolidCorrection final : public Effect<Dim> {
   }
 
  private:
+  using Displacement = packed::Displacement<Dim>;
+  using Piola = packed::Piola<Dim>;
+
   void place(World<Dim>& world) {
     done_ = true;
     const ParticleSet<Dim>& set = world.set(set_);
     const auto& at_rest = set.vector(fields::reference_position);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      for (int which = 0; which < 2; ++which) {
-        auto& records = world.records(set_, which).template get<T>();
-        parallel_for(set.size(), [&](Index i) { records.set_position(i, at_rest[i]); });
-      }
+      const auto displacements = write_records<Displacement, T>(world, set_);
+      const auto stresses = write_records<Piola, T>(world, set_);
+      parallel_for(set.size(), [&](Index i) {
+        displacements.set_position(i, at_rest[i]);
+        stresses.set_position(i, at_rest[i]);
+      });
     });
   }
 

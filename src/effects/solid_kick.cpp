@@ -9,15 +9,16 @@
 namespace sphgeo {
 namespace {
 
-/// Velocity and place of elastic solids at the end of their step (Eqs. 100, 101), what Eq. 95
+/// Velocity and position of elastic solids at the end of their step (Eqs. 100, 101), what Eq. 95
 /// averages, and the bounds of their clock.
 template <int Dim>
 class SolidKick final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"solid_kick", Stage::solid_kick, "Eqs. 94, 95, 100, 101",
-            "velocity and place of elastic solids at the end of their step; bound of their clock",
-            false};
+    return {
+        "solid_kick", Stage::solid_kick, "Eqs. 94, 95, 100, 101",
+        "velocity and position of elastic solids at the end of their step; bound of their clock",
+        false};
   }
   static Binding<Dim> bind(const World<Dim>& world) { return bind_solids<SolidKick>(world); }
 
@@ -28,6 +29,7 @@ class SolidKick final : public Effect<Dim> {
   Needs needs() const override {
     return {{{set_, &fields::acceleration_sum, Access::read},
              {set_, &fields::clamp, Access::read},
+             {set_, &fields::fluid_force, Access::read, true},
              {set_, &fields::position, Access::update},
              {set_, &fields::velocity, Access::update},
              {set_, &fields::acceleration, Access::update}},
@@ -56,7 +58,7 @@ class SolidKick final : public Effect<Dim> {
       if (!p.elastic) return;
       Vec<Dim> before = v[i];
       if (clamp[i] < 0) {
-        Vec<Dim> a = sum[i] + world.pull(x[i]);
+        Vec<Dim> a = sum[i] + world.body_acceleration(x[i]);
         if (fluid) a += (*fluid)[i] / m[i];
         // Damping at the mean of both velocities: stable at any rate.
         v[i] = (v[i] * (1 - 0.5 * dt * p.damping) + dt * a) / (1 + 0.5 * dt * p.damping);
@@ -89,18 +91,18 @@ class SolidKick final : public Effect<Dim> {
     const auto& a = set.vector(fields::acceleration);
     const double speed = std::sqrt(block_max(
         set.size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
-    const double pull = std::sqrt(block_max(
+    const double acceleration = std::sqrt(block_max(
         set.size(), [&](Index i) { return a[i].squaredNorm(); }, 0.0));
     limits.note_speed(set_, speed / slowest_);
     // Eq. 94, with the compression wave: c_0 of Eq. 53 is slower, by 1.7 times at nu = 0.
-    const double step =
-        solid_courant(n) * std::min(h / (sound_ + speed), std::sqrt(h / std::max(pull, 1e-300)));
+    const double step = solid_courant(n) * std::min(h / (sound_ + speed),
+                                                    std::sqrt(h / std::max(acceleration, 1e-300)));
     limits.solid = std::min(limits.solid, step);
     // Not before: a run that is resumed has no particles yet when it is prepared.
     if (!beside_) beside_ = step_beside_light_solids(world, set_);
     limits.lower_acoustic(*beside_, "a solid lighter than what touches it");
     limits.advection = std::min(limits.advection, n.cfl_advection * h / std::max(speed, 1e-300));
-    // Alone, a solid has no configuration to update: how often somebody may look decides.
+    // Alone, a solid has no configuration to update: the probes decide how often.
     if (!world.find("water") && !world.find("soil"))
       limits.advection = std::min(limits.advection, n.advection_ratio_max * step);
   }

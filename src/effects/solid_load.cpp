@@ -1,24 +1,24 @@
 #include "core/parallel.h"
-#include "effects/skin.h"
+#include "effects/interface.h"
 
 namespace sphgeo {
 namespace {
 
-/// Hands the forces of water and soil from the skin to the solids, where they act through all steps
-/// of solids in the acoustic step. Their means over the advection step are what a probe shows: each
-/// rearrangement shakes the pressure, the steps after it calm it down, and the last of them alone
-/// is some percent off the force that moved the body.
+/// Transfers the forces of water and soil from the interface to the solids, where they act through
+/// all steps of solids in the acoustic step. Their means over the advection step are what a probe
+/// shows: each rearrangement shakes the pressure, the steps after it calm it down, and the last of
+/// them alone is some percent off the force that moved the body.
 template <int Dim>
 class SolidLoad final : public Effect<Dim> {
  public:
   static EffectInfo info() {
     return {"solid_load", Stage::force, "Eq. 65, F^rs",
-            "hands the forces of water and soil on their surface to the solids", false};
+            "transfers the forces of water and soil on their surface to the solids", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     const bool water = world.find("water"),
                soil = world.find("soil") && world.parameters().soil.deformable;
-    if (!world.find("skin") || (!water && !soil)) return {"no solid is in water or soil"};
+    if (!world.find("interface") || (!water && !soil)) return {"no solid is in water or soil"};
     return {std::make_unique<SolidLoad>(solid_sets(world), water, soil),
             "there are solids in water or soil"};
   }
@@ -30,11 +30,11 @@ class SolidLoad final : public Effect<Dim> {
   Needs needs() const override {
     Needs n;
     if (water_)
-      n.fields.insert(n.fields.end(), {{"skin", &fields::water_force, Access::read},
-                                       {"skin", &fields::mean_water_force, Access::update}});
+      n.fields.insert(n.fields.end(), {{"interface", &fields::water_force, Access::read},
+                                       {"interface", &fields::mean_water_force, Access::update}});
     if (soil_)
-      n.fields.insert(n.fields.end(), {{"skin", &fields::soil_force, Access::read},
-                                       {"skin", &fields::mean_soil_force, Access::update}});
+      n.fields.insert(n.fields.end(), {{"interface", &fields::soil_force, Access::read},
+                                       {"interface", &fields::mean_soil_force, Access::update}});
     for (const std::string& set : solids_)
       n.fields.push_back({set, &fields::fluid_force, Access::write});
     return n;
@@ -46,13 +46,13 @@ class SolidLoad final : public Effect<Dim> {
       force.push_back(&world.set(set).vector(fields::fluid_force));
       parallel_for(force.back()->size(), [&](Index i) { (*force.back())[i].setZero(); });
     }
-    ParticleSet<Dim>& skin = world.set("skin");
-    const auto& number = skin.tag(fields::source_set);
+    ParticleSet<Dim>& interface = world.set("interface");
+    const auto& number = interface.tag(fields::source_set);
     const double share = share_of_mean(world.clock);
     const auto add = [&](const FieldSpec& field, const FieldSpec& mean_field) {
-      const auto& by = skin.vector(field);
-      auto& mean = skin.vector(mean_field);
-      parallel_for(skin.size(), [&](Index s) {
+      const auto& by = interface.vector(field);
+      auto& mean = interface.vector(mean_field);
+      parallel_for(interface.size(), [&](Index s) {
         (*force[static_cast<std::size_t>(number[s])])[map_.at(s).i] += by[s];
         mean[s] += share * (by[s] - mean[s]);
       });
@@ -83,7 +83,7 @@ class SolidLoad final : public Effect<Dim> {
   bool water_, soil_;
   long step_ = 0;    ///< the advection step that the means are of
   double time_ = 0;  ///< that they are taken over, s
-  SkinMap<Dim> map_;
+  InterfaceMap<Dim> map_;
 };
 
 const RegisterEffect<SolidLoad> registered_solid_load;

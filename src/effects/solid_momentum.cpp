@@ -1,4 +1,5 @@
 #include "core/parallel.h"
+#include "effects/piola_records.h"
 #include "effects/solid_phase.h"
 
 namespace sphgeo {
@@ -13,12 +14,17 @@ struct PiolaForce {
   struct Sums {
     LaneVec<Dim, T> force{};
   };
-  template <class T, int N>
-  void operator()(Sums<T>& sum, const Record<Dim, T, N>& i, const Record<Dim, T, N>& j,
+  template <class T, class... R>
+  void operator()(Sums<T>& sum, const Record<T, R...>& i, const Record<T, R...>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
     T both[Dim * Dim];
-    for (int k = 0; k < Dim * Dim; ++k)
-      both[k] = i[solid_slot::piola<Dim>(k)] + j[solid_slot::piola<Dim>(k)];
+    constexpr int first = packed::first_piola_numbers<Dim>;
+    for (int k = 0; k < first; ++k)
+      both[k] = i.at(packed::Piola<Dim>::numbers, k) + j.at(packed::Piola<Dim>::numbers, k);
+    if constexpr (Dim == 3)
+      for (int k = first; k < Dim * Dim; ++k)
+        both[k] = i.at(packed::PiolaRest::numbers, k - first) +
+                  j.at(packed::PiolaRest::numbers, k - first);
     sum.force += kernel.dw_over_r(r2) * times(both, r);
   }
 };
@@ -34,15 +40,15 @@ struct ViscousPiolaForce {
   struct Sums {
     LaneVec<Dim, T> force{}, viscous{};
   };
-  template <class T, int N>
-  void operator()(Sums<T>& sum, const Record<Dim, T, N>& i, const Record<Dim, T, N>& j,
+  template <class T, class... R>
+  void operator()(Sums<T>& sum, const Record<T, R...>& i, const Record<T, R...>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
+    using Motion = packed::SolidMotion<Dim>;
     typename PiolaForce<Dim>::template Sums<T> elastic{sum.force};
     stress(elastic, i, j, r, r2);
     sum.force = elastic.force;
-    const LaneVec<Dim, T> now =
-        r + i.vec(solid_slot::travelled<Dim>) - j.vec(solid_slot::travelled<Dim>);
-    const LaneVec<Dim, T> dv = i.vec(solid_slot::velocity<Dim>) - j.vec(solid_slot::velocity<Dim>);
+    const LaneVec<Dim, T> now = r + i.vec(Motion::displacement) - j.vec(Motion::displacement);
+    const LaneVec<Dim, T> dv = i.vec(Motion::velocity) - j.vec(Motion::velocity);
     sum.viscous +=
         (stress.kernel.dw_over_r(r2) * dot(dv, now) / (dot(now, now) + T(softening))) * now;
   }
@@ -63,19 +69,21 @@ class SolidMomentum final : public Effect<Dim> {
   }
   static Binding<Dim> bind(const World<Dim>& world) { return bind_solids<SolidMomentum>(world); }
 
-  explicit SolidMomentum(std::string set) : set_(std::move(set)) {}
+  explicit SolidMomentum(std::string set, bool viscous) : set_(std::move(set)), viscous_(viscous) {}
   const std::string& set_name() const { return set_; }
 
   std::string acts_on() const override { return set_; }
   Needs needs() const override {
-    return {{{set_, &fields::reference_volume, Access::read},
+    Needs n{{{set_, &fields::reference_volume, Access::read},
              {set_, &fields::mass, Access::read},
              {set_, &fields::acceleration_sum, Access::write}},
             {},
             {set_}};
+    n.record<packed::Piola<Dim>>(set_, Access::read, packed::Piola<Dim>::position);
+    need_piola<Dim>(n, set_, Access::read);
+    if (viscous_) n.record<packed::SolidMotion<Dim>>(set_, Access::read);
+    return n;
   }
-
-  void prepare(World<Dim>& world) override { viscous_ = viscous_solids(world, set_); }
 
   void apply(World<Dim>& world) override {
     const ParticleSet<Dim>& set = world.set(set_);
@@ -97,11 +105,7 @@ class SolidMomentum final : public Effect<Dim> {
     const PairWeights<Dim>& more = world.reference_weights(set_);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      const auto records = [&](int k) -> const Records<Dim, T>& {
-        return world.records(set_, k).template get<T>();
-      };
-      const T* stress[] = {records(1).data(),
-                           records(solid_slot::stress_records_of_solids<Dim>).data()};
+      const PiolaReading<Dim, T> stress(world, set_);
       const auto walk = [&](const auto& all) {
         gather<Pair::template Sums>(
             world.reference_list(set_), all, all, pair, [&](Index i, const auto& sum) {
@@ -112,26 +116,20 @@ class SolidMomentum final : public Effect<Dim> {
               if (!more.empty())
                 more.by_source.for_row(i, [&](Index k, const float* weight) {
                   for (int a = 0; a < Dim; ++a)
-                    for (int c = 0; c < Dim; ++c) {
-                      constexpr auto slot_of = solid_slot::piola<Dim>;
-                      const int slot = slot_of(a * Dim + c);
-                      force[a] -=
-                          static_cast<double>(
-                              stress[slot / record_size][k * record_size + slot % record_size]) *
-                          static_cast<double>(weight[c]);
-                    }
+                    for (int c = 0; c < Dim; ++c)
+                      force[a] -= stress.get(k, a * Dim + c) * static_cast<double>(weight[c]);
                 });
               sum_of_forces[i] = (volume[i] / m[i]) * force;
             });
       };
-      if constexpr (Dim == 2 && !viscous) walk(records(1));
-      else if constexpr (Dim == 2 || !viscous) walk(with(records(1), records(2)));
-      else walk(with(records(1), records(2), records(3)));
+      if constexpr (viscous)
+        walk(stress.with_more(read_records<packed::SolidMotion<Dim>, T>(world, set_)));
+      else walk(stress.with_more());
     });
   }
 
   std::string set_;
-  bool viscous_ = false;
+  bool viscous_;
 };
 
 const RegisterEffect<SolidMomentum> registered_solid_momentum;

@@ -1,6 +1,6 @@
 #pragma once
-// What the effects of solids share: record layout, the deformation of
-// the places at hand.
+// What the effects of solids share: parameters of their bodies, needs, the deformation of
+// the current positions.
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -11,6 +11,7 @@
 
 #include "effects/effect.h"
 #include "effects/soil_phase.h"
+#include "effects/solid_packing.h"
 #include "materials/hyperelastic.h"
 #include "sph/gather.h"
 #include "sph/kernel.h"
@@ -53,7 +54,8 @@ std::vector<std::string> solid_sets(const World<Dim>& world) {
   return names;
 }
 
-/// One effect of kind E for each set of solids that has elastic bodies (or `rigid` ones).
+/// One effect of kind E for each set of solids that has elastic bodies (or `rigid` ones). E is made
+/// from the name of the set, and from whether its solids are viscous where it asks for that.
 template <class E, int Dim>
 Binding<Dim> bind_solids(const World<Dim>& world, bool rigid = false) {
   Binding<Dim> binding(rigid ? "there are no rigid solids" : "there are no elastic solids");
@@ -62,30 +64,29 @@ Binding<Dim> bind_solids(const World<Dim>& world, bool rigid = false) {
     const std::string& set = part.set;
     const auto same = [&](const auto& e) { return static_cast<const E&>(*e).set_name() == set; };
     if (std::any_of(binding.effects.begin(), binding.effects.end(), same)) continue;
-    binding.effects.push_back(std::make_unique<E>(set));
+    if constexpr (std::is_constructible_v<E, std::string, bool>)
+      binding.effects.push_back(std::make_unique<E>(set, viscous_solids(world, set)));
+    else binding.effects.push_back(std::make_unique<E>(set));
     binding.because = rigid ? "there are rigid solids" : "there are elastic solids";
   }
   return binding;
 }
 
-/// Slots of the records of solids. Record 0: reference position and w; records 1 and 2: reference
-/// position and P B.
-namespace solid_slot {
-inline constexpr int displacement = 4;  ///< w, see Deformation
-/// Number k of P . B by rows, Dim x Dim numbers, behind the position of record 1.
+/// Names what a set of solids needs for Deformation: the positions at rest, and a displacement of
+/// the effect's own.
 template <int Dim>
-constexpr int piola(int k) {
-  return Dim + k < 8 ? Dim + k : 8 + (Dim + k - 8);
+void need_deformation(Needs& needs, const std::string& set) {
+  using Displacement = packed::Displacement<Dim>;
+  needs.record<Displacement>(set, Access::read, Displacement::position);
+  needs.record<Displacement>(set, Access::scratch, Displacement::displacement);
 }
-/// Records of the stress alone. The one behind them holds displacement and velocity, for viscous
-/// solids.
+
+/// Names the records of their stress, or all that is written of them by `access`.
 template <int Dim>
-inline constexpr int stress_records_of_solids = Dim == 2 ? 1 : 2;
-template <int Dim>
-inline constexpr int travelled = stress_records_of_solids<Dim>* record_size;
-template <int Dim>
-inline constexpr int velocity = travelled<Dim> + 3;
-}  // namespace solid_slot
+void need_piola(Needs& needs, const std::string& set, Access access) {
+  needs.record<packed::Piola<Dim>>(set, access, packed::Piola<Dim>::numbers);
+  if constexpr (Dim == 3) needs.record<packed::PiolaRest>(set, access);
+}
 
 /// A plain matrix of the scene's dimension.
 template <int Dim>
@@ -132,29 +133,30 @@ Mat<Dim> nearest_rotation(const Mat<Dim>& a) {
   return svd.matrixU() * flip * svd.matrixV().transpose();
 }
 
-/// The deformation gradient of all particles of a set at their places. Eq. 67 is linear in the
-/// velocities, and so is its integral in the places: with B0, F_i = sum_j (x_j - x_i) (x) grad W V
-/// B0, and no error adds up. The pair sums see w = R^T (x - c) - (X - C), what a body has moved
+/// The deformation gradient of all particles of a set at their positions. Eq. 67 is linear in the
+/// velocities, and so is its integral in the positions: with B0, F_i = sum_j (x_j - x_i) (x) grad W
+/// V B0, and no error adds up. The pair sums see w = R^T (x - c) - (X - C), what a body has moved
 /// beyond its rigid motion (R, c): as F = R (I + sum (w_j - w_i) (x) grad W V B0) holds for any R
-/// and c, single precision costs digits of the strain and not of the travelled way.
+/// and c, single precision costs digits of the strain and not of the displacement.
 template <int Dim>
 class Deformation {
  public:
   explicit Deformation(std::string set) : set_(std::move(set)) {}
 
-  /// Frames of the bodies at the places at hand, from a few particles of each: near is near enough.
+  /// Frames of the bodies in the current configuration, from a few particles of each: an estimate
+  /// suffices.
   void find_frames(const World<Dim>& world);
   const BodyFrame<Dim>& frame(std::int32_t part) const {
     return frames_[static_cast<std::size_t>(part)];
   }
 
-  /// Writes w of particle i at the place x.
+  /// Writes w of particle i at the position x.
   template <class T>
-  void pack(Records<Dim, T>& records, Index i, const Vec<Dim>& x, const Vec<Dim>& reference,
-            std::int32_t part) const {
+  void pack(const RecordPacking<packed::Displacement<Dim>, T>& records, Index i, const Vec<Dim>& x,
+            const Vec<Dim>& reference, std::int32_t part) const {
     const BodyFrame<Dim>& f = frame(part);
     const Vec<Dim> w = f.rotation.transpose() * (x - f.center) - (reference - f.reference_center);
-    for (int k = 0; k < Dim; ++k) records[i][solid_slot::displacement + k] = static_cast<T>(w[k]);
+    records[i].put(packed::Displacement<Dim>::displacement, w);
   }
 
   /// Calls finish(i, g): F = R (I + g) with the rotation of the body's frame. Reads what pack()
@@ -170,6 +172,7 @@ class Deformation {
 /// Sum of (w_j - w_i) (x) grad W at rest.
 template <int Dim>
 struct DisplacementGradient {
+  using Solid = packed::Displacement<Dim>;
   Kernel<Dim> kernel;
 
   template <class T>
@@ -177,11 +180,10 @@ struct DisplacementGradient {
     T g[Dim * Dim] = {};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T>& j,
+  void operator()(Sums<T>& sum, const Record<T, Solid>& i, const Record<T, Solid>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
     const T gradient = kernel.dw_over_r(r2);
-    const LaneVec<Dim, T> dw =
-        gradient * (j.vec(solid_slot::displacement) - i.vec(solid_slot::displacement));
+    const LaneVec<Dim, T> dw = gradient * (j.vec(Solid::displacement) - i.vec(Solid::displacement));
     for (int k = 0; k < Dim; ++k)
       for (int l = 0; l < Dim; ++l) sum.g[k * Dim + l] += dw[k] * r[l];
   }
@@ -199,7 +201,8 @@ void Deformation<Dim>::gather_gradients(World<Dim>& world, F&& finish) const {
   const DisplacementGradient<Dim> pair{Kernel<Dim>(set.smoothing_length())};
   world.with_pair_precision([&](auto number) {
     using T = decltype(number);
-    const auto& records = world.records(set_, 0).template get<T>();
+    using Solid = packed::Displacement<Dim>;
+    const auto records = read_records<Solid, T>(world, set_);
     const PairWeights<Dim>& more = world.reference_weights(set_);
     gather<DisplacementGradient<Dim>::template Sums>(
         world.reference_list(set_), records, records, pair, [&](Index i, const auto& sum) {
@@ -213,10 +216,9 @@ void Deformation<Dim>::gather_gradients(World<Dim>& world, F&& finish) const {
               Vec<Dim> mirrored = Vec<Dim>::Zero();
               if (j == i) mirrored = frame(part[i]).rotation.transpose() * (reference[i] - x[i]);
               for (int k = 0; k < Dim; ++k) {
-                const double dw =
-                    j == i ? mirrored[k]
-                           : static_cast<double>(records[j][solid_slot::displacement + k]) -
-                                 static_cast<double>(records[i][solid_slot::displacement + k]);
+                const double dw = j == i ? mirrored[k]
+                                         : records.get(j, Solid::displacement, k) -
+                                               records.get(i, Solid::displacement, k);
                 for (int l = 0; l < Dim; ++l) g(k, l) += dw * static_cast<double>(weight[l]);
               }
             });

@@ -1,27 +1,32 @@
+#include <optional>
+
 #include "core/parallel.h"
 #include "deck/motion.h"
+#include "effects/piola_records.h"
 #include "effects/solid_phase.h"
 
 namespace sphgeo {
 namespace {
 
-/// Elastic solids at the middle of their step: places, deformation (Eqs. 67, 99) and stress (Eqs.
-/// 36 to 40). Clamped regions are where their motion takes them.
+/// Elastic solids at the middle of their step: positions, deformation (Eqs. 67, 99) and stress
+/// (Eqs. 36 to 40). Clamped regions are where their motion takes them.
 template <int Dim>
 class SolidPredict final : public Effect<Dim> {
  public:
   static EffectInfo info() {
     return {"solid_predict", Stage::solid_predict, "Eqs. 36-40, 67, 99",
-            "places, deformation and stress of elastic solids at the middle of their step", false};
+            "positions, deformation and stress of elastic solids at the middle of their step",
+            false};
   }
   static Binding<Dim> bind(const World<Dim>& world) { return bind_solids<SolidPredict>(world); }
 
-  explicit SolidPredict(std::string set) : set_(std::move(set)), deformation_(set_) {}
+  explicit SolidPredict(std::string set, bool viscous)
+      : set_(std::move(set)), viscous_(viscous), deformation_(set_) {}
   const std::string& set_name() const { return set_; }
 
   std::string acts_on() const override { return set_; }
   Needs needs() const override {
-    return {{{set_, &fields::velocity, Access::read},
+    Needs n{{{set_, &fields::velocity, Access::read},
              {set_, &fields::reference_position, Access::read},
              {set_, &fields::reference_volume, Access::read},
              {set_, &fields::reference_correction, Access::read},
@@ -29,9 +34,11 @@ class SolidPredict final : public Effect<Dim> {
              {set_, &fields::position, Access::update}},
             {},
             {set_}};
+    need_deformation<Dim>(n, set_);
+    need_piola<Dim>(n, set_, Access::write);
+    if (viscous_) n.record<Moved>(set_, Access::write);
+    return n;
   }
-
-  void prepare(World<Dim>& world) override { viscous_ = viscous_solids(world, set_); }
 
   void apply(World<Dim>& world) override {
     ParticleSet<Dim>& set = world.set(set_);
@@ -44,8 +51,7 @@ class SolidPredict final : public Effect<Dim> {
     const bool at_face = clamps_at_face(world);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      T* record[2] = {world.records(set_, 1).template get<T>()[0], nullptr};
-      if constexpr (Dim == 3) record[1] = world.records(set_, 2).template get<T>()[0];
+      const PiolaPacking<Dim, T> pack(world, set_);
       deformation_.gather_gradients(world, [&](Index i, const Mat<Dim>& g) {
         const SolidPart& p = parts[part[i]];
         Mat<Dim> pb = Mat<Dim>::Zero();
@@ -56,16 +62,14 @@ class SolidPredict final : public Effect<Dim> {
           pb = deformation_.frame(part[i]).rotation * to_scene_tensor<Dim>(s + grad * s) *
                to_matrix<Dim>(correction[i]);
         }
-        for (int k = 0; k < Dim * Dim; ++k) {
-          const int slot = solid_slot::piola<Dim>(k);
-          record[slot / record_size][i * record_size + slot % record_size] =
-              static_cast<T>(pb(k / Dim, k % Dim));
-        }
+        pack(i, pb);
       });
     });
   }
 
  private:
+  using Moved = packed::SolidMotion<Dim>;
+
   void move_and_pack(World<Dim>& world, ParticleSet<Dim>& set) {
     const double half = 0.5 * world.clock.dt_solid, middle = world.clock.solid_time() + half;
     auto& x = set.vector(fields::position);
@@ -76,11 +80,9 @@ class SolidPredict final : public Effect<Dim> {
     const SolidParameters& parts = world.parameters().solids;
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& records = world.records(set_, 0).template get<T>();
-      auto* motion_records =
-          viscous_ ? &world.records(set_, 1 + solid_slot::stress_records_of_solids<Dim>)
-                          .template get<T>()
-                   : nullptr;
+      const auto records = write_records<packed::Displacement<Dim>, T>(world, set_);
+      std::optional<RecordPacking<Moved, T>> motions;
+      if (viscous_) motions = write_records<Moved, T>(world, set_);
       parallel_for(set.size(), [&](Index i) {
         if (!parts[part[i]].elastic) return;
         if (clamp[i] < 0) {
@@ -91,18 +93,15 @@ class SolidPredict final : public Effect<Dim> {
                         : reference[i];
         }
         deformation_.pack(records, i, x[i], reference[i], part[i]);
-        if (!motion_records) return;
-        T* slot = (*motion_records)[i];
-        for (int k = 0; k < Dim; ++k) {
-          slot[k] = static_cast<T>(x[i][k] - reference[i][k]);
-          slot[3 + k] = static_cast<T>(v[i][k]);
-        }
+        if (!motions) return;
+        (*motions)[i].put(Moved::displacement, x[i] - reference[i]);
+        (*motions)[i].put(Moved::velocity, v[i]);
       });
     });
   }
 
   std::string set_;
-  bool viscous_ = false;
+  bool viscous_;
   Deformation<Dim> deformation_;  // its frames hold for one acoustic step
 };
 

@@ -4,8 +4,8 @@
 namespace sphgeo {
 namespace {
 
-/// Stress, strain energy, volume and density of elastic solids at the places at hand, for whoever
-/// looks at them.
+/// Stress, strain energy, volume and density of elastic solids in the current configuration, for
+/// observers.
 template <int Dim>
 class SolidState final : public Effect<Dim> {
  public:
@@ -21,7 +21,7 @@ class SolidState final : public Effect<Dim> {
 
   std::string acts_on() const override { return set_; }
   Needs needs() const override {
-    return {{{set_, &fields::reference_position, Access::read},
+    Needs n{{{set_, &fields::reference_position, Access::read},
              {set_, &fields::reference_volume, Access::read},
              {set_, &fields::reference_correction, Access::read},
              {set_, &fields::cauchy_stress, Access::write},
@@ -30,6 +30,8 @@ class SolidState final : public Effect<Dim> {
              {set_, &fields::volume, Access::write}},
             {},
             {set_}};
+    need_deformation<Dim>(n, set_);
+    return n;
   }
 
   void apply(World<Dim>& world) override {
@@ -48,7 +50,7 @@ class SolidState final : public Effect<Dim> {
     deformation_.find_frames(world);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& records = world.records(set_, 0).template get<T>();
+      const auto records = write_records<packed::Displacement<Dim>, T>(world, set_);
       parallel_for(set.size(),
                    [&](Index i) { deformation_.pack(records, i, x[i], reference[i], part[i]); });
     });

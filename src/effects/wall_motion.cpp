@@ -6,14 +6,14 @@
 #include "core/parallel.h"
 #include "deck/motion.h"
 #include "effects/effect.h"
-#include "effects/wall_records.h"
+#include "effects/pack_walls.h"
 #include "sph/parameters.h"
 
 namespace sphgeo {
 namespace {
 
-/// A step of what a piston moves beside that to take up waves (see wave_absorption.cpp): zero for
-/// every other wall.
+/// Displacement, velocity and acceleration that active wave absorption adds (wave_absorption.cpp):
+/// zero for every other wall.
 struct Extra {
   Vec3 shift = Vec3::Zero(), velocity = Vec3::Zero(),
        acceleration = Vec3::Zero();  // at the end, the middle and the middle of the step
@@ -30,8 +30,8 @@ struct Extra {
   }
 };
 
-/// Walls whose motion the deck prescribes: place at the end of the step, velocity and acceleration
-/// at its middle.
+/// Walls whose motion the deck prescribes: position at the end of the step, velocity and
+/// acceleration at its middle.
 template <int Dim>
 class WallMotion final : public Effect<Dim> {
  public:
@@ -41,13 +41,16 @@ class WallMotion final : public Effect<Dim> {
   static Binding<Dim> bind(const World<Dim>& world) {
     for (const BoundaryMotion& wall : world.parameters().boundary_motions)
       if (world.find("walls") && wall.motion)
-        return {std::make_unique<WallMotion>(), "boundary '" + wall.name + "' has a motion"};
+        return {std::make_unique<WallMotion>(!world.frozen_geometry()),
+                "boundary '" + wall.name + "' has a motion"};
     return {"no boundary has a motion"};
   }
 
+  explicit WallMotion(bool current_geometry) : current_geometry_(current_geometry) {}
+
   std::string acts_on() const override { return "walls"; }
   Needs needs() const override {
-    return {{{"walls", &fields::part, Access::read},
+    Needs n{{{"walls", &fields::part, Access::read},
              {"walls", &fields::reference_position, Access::read},
              {"walls", &fields::reference_normal, Access::read},
              {"walls", &fields::position, Access::update},
@@ -55,6 +58,9 @@ class WallMotion final : public Effect<Dim> {
              {"walls", &fields::acceleration, Access::update},
              {"walls", &fields::normal, Access::update}},
             {}};
+    need_wall_packing<Dim>(n, "walls", Access::update);
+    if (current_geometry_) n.record<Position<Dim>>("walls", Access::update);
+    return n;
   }
 
   void prepare(World<Dim>& world) override {
@@ -96,11 +102,11 @@ class WallMotion final : public Effect<Dim> {
       n[i] = to_scene<Dim>(motion.direction(to_space<Dim>(n0[i])));
     });
     pack_walls(world, "walls", &moving_);
-    if (world.frozen_geometry()) return;
+    if (!current_geometry_) return;
     world.with_pair_precision([&](auto number) {
-      auto& record = world.records("walls").template get<decltype(number)>();
-      parallel_for(static_cast<Index>(moving_.size()), [&](Index place) {
-        const Index i = moving_[static_cast<std::size_t>(place)];
+      const auto record = write_records<Position<Dim>, decltype(number)>(world, "walls");
+      parallel_for(static_cast<Index>(moving_.size()), [&](Index k) {
+        const Index i = moving_[static_cast<std::size_t>(k)];
         record.set_position(i, x[i]);
       });
     });
@@ -119,6 +125,7 @@ class WallMotion final : public Effect<Dim> {
     moving_.assign(moving.begin(), moving.end());
   }
 
+  bool current_geometry_;
   std::vector<const Motion*> motions_;  ///< by number of the boundary; null: it rests
   std::vector<Index> moving_;
   long arrangement_ = -1;

@@ -1,5 +1,5 @@
 #include "effects/effect.h"
-#include "effects/water_pull.h"
+#include "effects/water_wall_force.h"
 
 namespace sphgeo {
 namespace {
@@ -20,43 +20,45 @@ class WallReaction final : public Effect<Dim> {
 
   std::string acts_on() const override { return "walls near water"; }
   Needs needs() const override {
-    return {{{"water", &fields::pressure, Access::read},
-             {"water", &fields::volume, Access::read},
-             {"water", &fields::acceleration, Access::read},
-             {"water", &fields::density, Access::read},
-             {"walls", &fields::wall_force, Access::write}},
+    Needs n{{{"walls", &fields::wall_force, Access::write}},
             {{"walls", "water"}, {"water", "walls"}}};
+    need_pressure_gradient<Dim>(n);
+    n.record<Position<Dim>>("water", Access::read);
+    n.record<Water>("water", Access::read, Water::velocity, Water::pressure);
+    n.record<packed::ObservedWater<Dim>>("water", Access::read);
+    need_wall_records<Dim>(n, "walls");
+    return n;
   }
   void prepare(World<Dim>& world) override {
     walls_ = &world.set("walls");
     water_ = &world.set("water");
-    world.records("water", 1);
   }
 
   void apply(World<Dim>& world) override {
-    const WaterForceOnWall<Dim> pair{
+    const Pair pair{
         WallPair<Dim>(world.parameters().water, water_->smoothing_length(), water_->spacing())};
     auto& force = walls_->vector(fields::wall_force);
     parallel_for(walls_->size(), [&](Index i) { force[i].setZero(); });
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& second = world.records("water", 1).template get<T>();
+      const auto gradient = write_records<Gradient, T>(world, "water");
       const Field<double>* scale = gradient_scale(world);
-      pack_water_pull(world, world.list("water", "walls"), second);
+      pack_pressure_gradient(world, world.list("water", "walls"), gradient);
       parallel_for(water_->size(), [&](Index i) {
-        second[i][pair.scale - record_size] =
-            static_cast<T>(scale ? (*scale)[i] * (*scale)[i] : 1.0);
+        gradient[i].put(Gradient::reaction_scale, scale ? (*scale)[i] * (*scale)[i] : 1.0);
       });
-      gather<WaterForceOnWall<Dim>::template Sums>(
-          world.list("walls", "water"),
-          with(world.records("walls", 0).template get<T>(),
-               world.records("walls", 1).template get<T>()),
-          with(world.records("water", 0).template get<T>(), second), pair,
+      gather<Pair::template Sums>(
+          world.list("walls", "water"), wall_records<T>(world, "walls"),
+          with<T>(read_records<packed::ObservedWater<Dim>, T>(world, "water"), gradient), pair,
           [&](Index i, const auto& sum) { force[i] = to_vec(sum.force); });
     });
   }
 
  private:
+  using Water = packed::WaterState<Dim>;
+  using Gradient = packed::PressureGradient<Dim>;
+  using Pair = WaterForceOnWall<Dim, packed::ObservedWater>;
+
   ParticleSet<Dim>* walls_ = nullptr;
   ParticleSet<Dim>* water_ = nullptr;
 };

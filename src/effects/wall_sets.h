@@ -1,28 +1,31 @@
 #pragma once
-// What water and soil meet as walls: the walls themselves, and the skin of solids.
+// What water and soil meet as walls: the walls themselves, and the interface of solids.
 
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "effects/effect.h"
+#include "effects/wall_packing.h"
 
 namespace sphgeo {
 
-/// The sets that act as walls in a scene: "walls", "skin".
+/// The sets that act as walls in a scene: "walls", "interface".
 template <int Dim>
 std::vector<std::string> wall_sets(const World<Dim>& world) {
   std::vector<std::string> names;
-  for (const char* name : {"walls", "skin"})
+  for (const char* name : {"walls", "interface"})
     if (world.find(name)) names.emplace_back(name);
   return names;
 }
 
-/// Adds to the needs of an effect on `target` that it walks the walls around it.
-inline void need_walls(Needs& needs, const std::string& target,
+/// Adds to the needs of an effect on `target` that it sums over the volumes of the walls around it.
+template <int Dim>
+void need_wall_volumes(Needs& needs, const std::string& target,
                        const std::vector<std::string>& walls) {
   for (const std::string& set : walls) {
-    needs.fields.push_back({set, &fields::volume, Access::read});
+    needs.record<Position<Dim>>(set, Access::read);
+    needs.record<packed::Wall<Dim>>(set, Access::read, packed::Wall<Dim>::volume);
     needs.lists.push_back({target, set});
   }
 }
@@ -37,14 +40,15 @@ Binding<Dim> bind_walls(const World<Dim>& world, const std::string& target) {
     binding.effects.push_back(std::make_unique<E>(world, set));
     binding.because =
         "there are " + target + " and " +
-        (set == "skin" ? (binding.effects.size() > 1 ? "walls and solids" : "solids") : "walls");
+        (set == "interface" ? (binding.effects.size() > 1 ? "walls and solids" : "solids")
+                            : "walls");
   }
   return binding;
 }
 
 /// How `acts_on` names what is near a set of walls.
 inline std::string near_walls(const std::string& target, const std::string& walls) {
-  return target + (walls == "skin" ? " near solids" : " near walls");
+  return target + (walls == "interface" ? " near solids" : " near walls");
 }
 
 }  // namespace sphgeo

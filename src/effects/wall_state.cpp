@@ -1,5 +1,5 @@
 #include "effects/effect.h"
-#include "effects/wall_records.h"
+#include "effects/pack_walls.h"
 #include "sph/parameters.h"
 
 namespace sphgeo {
@@ -28,24 +28,21 @@ class WallState final : public Effect<Dim> {
              {"walls", &fields::no_slip, Access::read}},
             {}};
     if (moves_) n.fields.push_back({"walls", &fields::acceleration, Access::read});
+    need_wall_packing<Dim>(n, "walls", Access::write);
     return n;
   }
-  void prepare(World<Dim>& world) override {
-    world.records("walls", 0);
-    world.records("walls", 1);
-  }
   void apply(World<Dim>& world) override {
-    // What rests, under a pull that rests, is packed once.
+    // What rests, under a body acceleration that rests, is packed once.
     if (packed_ && !moves_ && !world.parameters().body_force) return;
     restore(world);
-    ParticleSet<Dim>& walls = world.set("walls");
-    auto& volume = walls.scalar(fields::volume);
-    const double each = std::pow(walls.spacing(), Dim);
-    parallel_for(walls.size(), [&](Index i) { volume[i] = each; });
   }
   void restore(World<Dim>& world) override {
     pack_walls(world);
     packed_ = true;
+    ParticleSet<Dim>& walls = world.set("walls");
+    auto& volume = walls.scalar(fields::volume);
+    const double each = std::pow(walls.spacing(), Dim);
+    parallel_for(walls.size(), [&](Index i) { volume[i] = each; });
   }
 
  private:

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "effects/skin.h"
+#include "effects/interface.h"
 #include "sph/cell_grid.h"
 
 namespace sphgeo {
@@ -23,13 +23,13 @@ template <int Dim>
 struct WallTouch {
   Kernel<Dim> kernel;
   double gap = 0;  ///< between the centres of its particles and those of a wall when both touch, m
-  double at_ease = 0;  ///< sum of W V over a plane wall there
+  double reference_overlap = 0;  ///< sum of W V over a plane wall there
   bool rigid = false;
   double mass = 0;     ///< of the body, kg
   Index touching = 0;  ///< its particles that touch a wall in this step
 };
 
-/// Walls as a particle of the skin sees them.
+/// Walls as an interface particle sees them.
 template <int Dim>
 struct WallSums {
   double sum = 0;                        ///< of W V
@@ -38,8 +38,8 @@ struct WallSums {
   Vec<Dim> velocity = Vec<Dim>::Zero();  ///< weighted mean, m/s
 };
 
-/// Mean sum of W V over a layer of a lattice of spacing dp, at a distance from it, over all places
-/// along it.
+/// Mean sum of W V over a layer of a lattice of spacing dp, at a distance from it, over all
+/// positions along it.
 template <int Dim>
 double layer_sum(const Kernel<Dim>& kernel, double distance, double dp) {
   if (distance >= kernel.support()) return 0;
@@ -113,7 +113,7 @@ std::vector<double> wall_bulk(const World<Dim>& world) {
   CellGrid<Dim> grid;
   std::vector<Vec<Dim>> at(static_cast<std::size_t>(walls.size()));
   parallel_for(walls.size(), [&](Index w) { at[static_cast<std::size_t>(w)] = y[w]; });
-  grid.build(at, world.grid("skin").frame(), kernel.support(),
+  grid.build(at, world.grid("interface").frame(), kernel.support(),
              {id.data(), static_cast<std::size_t>(id.size())});
   std::vector<double> bulk(static_cast<std::size_t>(walls.size()));
   parallel_for(walls.size(), [&](Index w) {
@@ -130,14 +130,14 @@ std::vector<double> wall_bulk(const World<Dim>& world) {
 /// Where each body of the model touches walls, as it stands at t = 0. The map must be up to date;
 /// `bulk` is that of wall_bulk().
 template <int Dim>
-std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const SkinMap<Dim>& map,
+std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const InterfaceMap<Dim>& map,
                                          const std::vector<std::string>& solids,
                                          const std::vector<double>& bulk) {
-  const ParticleSet<Dim>&skin = world.set("skin"), &walls = world.set("walls");
+  const ParticleSet<Dim>&interface = world.set("interface"), &walls = world.set("walls");
   std::vector<WallTouch<Dim>> touch(world.parameters().solids.of.size());
-  std::vector<Vec<Dim>> at(static_cast<std::size_t>(skin.size()));
+  std::vector<Vec<Dim>> at(static_cast<std::size_t>(interface.size()));
   double most = 0;
-  for (Index k = 0; k < skin.size(); ++k) {
+  for (Index k = 0; k < interface.size(); ++k) {
     const auto& [of, i] = map.at(k);
     WallTouch<Dim>& t = touch[static_cast<std::size_t>(of->part[i])];
     at[static_cast<std::size_t>(k)] = of->reference_position[i];
@@ -153,7 +153,7 @@ std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const SkinMap<
       touch[static_cast<std::size_t>(set.tag(fields::part)[i])].mass += set.scalar(fields::mass)[i];
   }
   CellGrid<Dim> grid;
-  grid.build(at, world.grid("skin").frame(), most);
+  grid.build(at, world.grid("interface").frame(), most);
   const auto& y = walls.vector(walls.has(fields::reference_position) ? fields::reference_position
                                                                      : fields::position);
   const auto& id = walls.ids();
@@ -168,10 +168,10 @@ std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const SkinMap<
     const SolidPart& p = world.parameters().solids.of[b];
     if (!p.is_solid) continue;
     touch[b].rigid = p.rigid();
-    touch[b].at_ease = half_space_sum(touch[b].kernel, touch[b].gap, walls.spacing());
+    touch[b].reference_overlap = half_space_sum(touch[b].kernel, touch[b].gap, walls.spacing());
   }
-  // Rows that start face to face see a little more than the mean over all places: not to be pushed
-  // apart, they get that. In a corner of two walls it would be too much for either alone.
+  // Rows that start face to face see a little more than the mean over all positions: not to be
+  // pushed apart, they get that. In a corner of two walls it would be too much for either alone.
   std::vector<double> sums(at.size(), 0), bulks(at.size(), 0);
   for (const auto& [w, k, r2] : pairs) {
     const auto& p = map.at(k);
@@ -181,8 +181,8 @@ std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const SkinMap<
     bulks[static_cast<std::size_t>(k)] += share * bulk[static_cast<std::size_t>(id[w])];
   }
   std::vector<double> most_seen(touch.size(), 0);
-  for (Index k = 0; k < skin.size(); ++k) {
-    double& seen = most_seen[static_cast<std::size_t>(skin.tag(fields::part)[k])];
+  for (Index k = 0; k < interface.size(); ++k) {
+    double& seen = most_seen[static_cast<std::size_t>(interface.tag(fields::part)[k])];
     const double sum = sums[static_cast<std::size_t>(k)];
     if (map.at(k).of->clamp[map.at(k).i] < 0 && sum > 0)
       seen = std::max(seen, sum * sum / bulks[static_cast<std::size_t>(k)]);
@@ -190,8 +190,9 @@ std::vector<WallTouch<Dim>> wall_touches(const World<Dim>& world, const SkinMap<
   // Rounded up: the last bits of a sum depend on the order of the walls, which a run that goes on
   // may find them in anew.
   for (std::size_t b = 0; b < touch.size(); ++b)
-    touch[b].at_ease =
-        std::clamp(std::ceil(most_seen[b] * 1e9) * 1e-9, touch[b].at_ease, 1.15 * touch[b].at_ease);
+    touch[b].reference_overlap =
+        std::clamp(std::ceil(most_seen[b] * 1e9) * 1e-9, touch[b].reference_overlap,
+                   1.15 * touch[b].reference_overlap);
   return touch;
 }
 

@@ -7,6 +7,8 @@ namespace {
 /// Divergence and density dissipation between two water particles.
 template <int Dim, bool Porous>
 struct ContinuityPair {
+  using Water = packed::WaterState<Dim>;
+  using Moving = std::conditional_t<Porous, packed::Mixture<Dim>, Water>;
   Kernel<Dim> kernel;
   double inverse_impedance;  ///< 1 / (rho0 c0)
   Vec<Dim> weight;           ///< rho0 g
@@ -23,16 +25,15 @@ struct ContinuityPair {
   struct Sums : std::conditional_t<Porous, Pores<T>, Clear<T>> {};
 
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T>& j,
+  void operator()(Sums<T>& sum, const Record<T, Moving>& i, const Record<T, Moving>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
-    using namespace water_slot;
-    const T gradient = kernel.dw_over_r(r2) * j[volume];
-    const T dv_r = dot(i.vec(velocity) - j.vec(velocity), r);
+    const T gradient = kernel.dw_over_r(r2) * j[Water::volume];
+    const T dv_r = dot(i.vec(Moving::velocity) - j.vec(Moving::velocity), r);
     // 2 (p_i - p_j) / (2 rho0 c0) dW/dr: the Riemann velocity U* instead of the mean one. Both
     // sides of the Riemann problem are first taken to the middle of the pair with the hydrostatic
     // gradient: the plain difference of Eq. 58 is not zero in still water, and where the kernel is
     // cut off at the free surface its sum lifts the surface for ever.
-    T jump = i[pressure] - j[pressure];
+    T jump = i[Water::pressure] - j[Water::pressure];
     for (int k = 0; k < Dim; ++k) jump -= T(weight[k]) * r[k];
     const T dissipation = jump * T(inverse_impedance) * length(r2);
     if constexpr (Porous) {
@@ -44,8 +45,8 @@ struct ContinuityPair {
   }
 };
 
-/// Rate of density of the water (Eq. 58). Where soil is, the records hold the velocity of the
-/// mixture (see SoilVelocity).
+/// Rate of density of the water (Eq. 58), where soil is with the velocity of the mixture (see
+/// SoilVelocity).
 template <int Dim>
 class WaterContinuity final : public Effect<Dim> {
  public:
@@ -66,9 +67,14 @@ class WaterContinuity final : public Effect<Dim> {
     Needs n{{{"water", &fields::density, Access::read},
              {"water", &fields::density_rate, Access::write}},
             {{"water", "water"}}};
+    using Water = packed::WaterState<Dim>;
+    n.record<Position<Dim>>("water", Access::read);
     if (porous_) {
       n.fields.push_back({"water", &fields::water_fraction, Access::read});
-      n.fields.push_back({"water", &fields::soil_velocity, Access::read});
+      n.record<Water>("water", Access::read, Water::volume, Water::pressure);
+      n.record<packed::Mixture<Dim>>("water", Access::read);
+    } else {
+      n.record<Water>("water", Access::read);
     }
     return n;
   }
@@ -94,7 +100,7 @@ class WaterContinuity final : public Effect<Dim> {
     const Field<double>* n = volume_share(world);
     const Field<double>* scale = gradient_scale(world);
     world.with_pair_precision([&](auto number) {
-      const auto& records = world.records("water").template get<decltype(number)>();
+      const auto records = read_records<typename Pair::Moving, decltype(number)>(world, "water");
       gather<Pair::template Sums>(
           world.list("water", "water"), records, records, pair, [&](Index i, const auto& sum) {
             if constexpr (Porous)

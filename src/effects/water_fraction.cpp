@@ -12,6 +12,8 @@ namespace {
 /// What the soil around a water particle amounts to.
 template <int Dim>
 struct SoilAround {
+  using Pore = packed::Pore<Dim>;
+  using Soil = packed::SoilDrag<Dim>;
   Kernel<Dim> kernel;
   template <class T>
   struct Sums {
@@ -20,12 +22,12 @@ struct SoilAround {
     LaneVec<3, T> drag{};  ///< sum of omega W times the coefficients of the drag
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j,
+  void operator()(Sums<T>& sum, const Record<T, Pore>&, const Record<T, Soil>& j,
                   const LaneVec<Dim, T>&, const T& r2) const {
-    const T w = kernel.w(r2), grains = w * j[pore_slot::weight];
+    const T w = kernel.w(r2), grains = w * j[Pore::weight];
     sum.grains += grains;
-    sum.presence += w * j[pore_slot::other];
-    for (int k = 0; k < 3; ++k) sum.drag[k] += grains * j[pore_slot::vector + k];
+    sum.presence += w * j[Soil::volume];
+    for (int k = 0; k < 3; ++k) sum.drag[k] += grains * j.at(Soil::coefficients, k);
   }
 };
 
@@ -38,26 +40,43 @@ struct WallShare {
     T share{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j,
-                  const LaneVec<Dim, T>&, const T& r2) const {
-    sum.share += kernel.w(r2) * j[wall_slot::volume];
+  void operator()(Sums<T>& sum, const Record<T, Position<Dim>>&,
+                  const Record<T, packed::Wall<Dim>>& j, const LaneVec<Dim, T>&,
+                  const T& r2) const {
+    sum.share += kernel.w(r2) * j[packed::Wall<Dim>::volume];
   }
 };
 
-/// sum of weight_j other_j W, and of weight_j W.
+/// sum of weight_j W.
 template <int Dim>
-struct WeightedNumber {
+struct WeightSum {
+  using Pore = packed::Pore<Dim>;
   Kernel<Dim> kernel;
   template <class T>
   struct Sums {
-    T weight{}, product{};
+    T weight{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T>& j,
+  void operator()(Sums<T>& sum, const Record<T, Pore>&, const Record<T, Pore>& j,
                   const LaneVec<Dim, T>&, const T& r2) const {
-    const T w = kernel.w(r2) * j[pore_slot::weight];
-    sum.weight += w;
-    sum.product += w * j[pore_slot::other];
+    sum.weight += kernel.w(r2) * j[Pore::weight];
+  }
+};
+
+/// sum of weight_j W times how far a unit impulse moves j.
+template <int Dim>
+struct MobilitySum {
+  using Pore = packed::Pore<Dim>;
+  using Soil = packed::SoilMobility<Dim>;
+  Kernel<Dim> kernel;
+  template <class T>
+  struct Sums {
+    T product{};
+  };
+  template <class T>
+  void operator()(Sums<T>& sum, const Record<T, Pore>&, const Record<T, Soil>& j,
+                  const LaneVec<Dim, T>&, const T& r2) const {
+    sum.product += kernel.w(r2) * j[Pore::weight] * j[Soil::per_mass];
   }
 };
 
@@ -83,7 +102,7 @@ class WaterFraction final : public Effect<Dim> {
       : walls_(wall_sets(world)), deformable_(world.parameters().soil.deformable) {}
 
   std::string acts_on() const override { return "water near soil"; }
-  // The places are those of before the transport shift, whose target volumes need this fraction:
+  // The positions are those of before the transport shift, whose target volumes need this fraction:
   // they are not named here.
   Needs needs() const override {
     Needs n{{{"water", &fields::water_fraction, Access::write},
@@ -93,10 +112,14 @@ class WaterFraction final : public Effect<Dim> {
              {"soil", &fields::volume_fraction, Access::read},
              {"soil", &fields::mass, Access::read}},
             {{"water", "soil"}}};
-    need_walls(n, "water", walls_);
+    need_wall_volumes<Dim>(n, "water", walls_);
+    n.record<Position<Dim>>("water", Access::previous);  // before particles are shifted
+    for (const char* set : {"water", "soil"}) n.record<Pore>(set, Access::write);
+    n.record<packed::SoilDrag<Dim>>("soil", Access::scratch);
     if (deformable_) {
       n.fields.push_back({"water", &fields::inverse_soil_mass, Access::write});
       n.lists.push_back({"soil", "water"});
+      n.record<packed::SoilMobility<Dim>>("soil", Access::scratch);
     }
     return n;
   }
@@ -105,8 +128,6 @@ class WaterFraction final : public Effect<Dim> {
     water_ = &world.set("water");
     soil_ = &world.set("soil");
     floor_ = world.parameters().numerics.water_fraction_floor;
-    world.records("water", water_pore_record);
-    world.records("soil", soil_pore_record);
   }
 
   void apply(World<Dim>& world) override {
@@ -131,35 +152,39 @@ class WaterFraction final : public Effect<Dim> {
   }
 
  private:
+  using Pore = packed::Pore<Dim>;
+
   double at_floor() const {
     const auto& n = water_->scalar(fields::water_fraction);
     return ordered_sum(water_->size(), [&](Index i) { return n[i] <= floor_ ? 1.0 : 0.0; });
   }
 
-  // Places and weights that pairs of water and soil keep for the whole advection step.
+  // Positions and weights that pairs of water and soil keep for the whole advection step.
   template <class T>
   void pack_pairs(World<Dim>& world) {
-    auto& soil = pore_records<T>(world, "soil");
-    auto& water = pore_records<T>(world, "water");
+    const auto soil = write_records<Pore, T>(world, "soil");
+    const auto water = write_records<Pore, T>(world, "water");
     const SoilParameters& parts = world.parameters().soil;
     const auto& part = soil_->tag(fields::part);
     const auto& m = soil_->scalar(fields::mass);
     const auto& grains = water_->scalar(fields::soil_sum);
-    const auto soil_at = world.arranged_places("soil"), water_at = world.arranged_places("water");
+    const auto soil_at = world.arranged_positions("soil"),
+               water_at = world.arranged_positions("water");
     parallel_for(soil_->size(), [&](Index k) {
       soil.set_position(k, soil_at[static_cast<std::size_t>(k)]);
-      soil[k][pore_slot::weight] = static_cast<T>(m[k] / parts[part[k]].grain_density);
+      soil[k].put(Pore::weight, m[k] / parts[part[k]].grain_density);
     });
     for_targets(world.list("water", "soil"), [&](Index i) {
       water.set_position(i, water_at[static_cast<std::size_t>(i)]);
-      water[i][pore_slot::weight] = static_cast<T>(grains[i] > 0 ? 1 / grains[i] : 0);
+      water[i].put(Pore::weight, grains[i] > 0 ? 1 / grains[i] : 0);
     });
   }
 
   // What only the sums of this stage need.
   template <class T>
   void pack_soil(World<Dim>& world) {
-    auto& soil = pore_records<T>(world, "soil");
+    using Drag = packed::SoilDrag<Dim>;
+    const auto soil = write_records<Drag, T>(world, "soil");
     const SoilParameters& parts = world.parameters().soil;
     const double g = world.gravity().norm(), rho0 = world.parameters().water.density,
                  eta = world.parameters().water.viscosity;
@@ -176,11 +201,11 @@ class WaterFraction final : public Effect<Dim> {
                        p.drag_inertial * rho0 / p.grain_size};
     }
     parallel_for(soil_->size(), [&](Index k) {
-      T* slot = soil[k];
+      const auto record = soil[k];
       for (int c = 0; c < 3; ++c)
-        slot[pore_slot::vector + c] =
-            static_cast<T>(drag[static_cast<std::size_t>(part[k])][static_cast<std::size_t>(c)]);
-      slot[pore_slot::other] = static_cast<T>(m[k] / (parts[part[k]].grain_density * n[k]));
+        record.put(Drag::coefficients, c,
+                   drag[static_cast<std::size_t>(part[k])][static_cast<std::size_t>(c)]);
+      record.put(Drag::volume, m[k] / (parts[part[k]].grain_density * n[k]));
     });
   }
 
@@ -188,8 +213,8 @@ class WaterFraction final : public Effect<Dim> {
   void sum_soil(World<Dim>& world) {
     const Kernel<Dim> kernel(water_->smoothing_length());
     const NeighborList& list = world.list("water", "soil");
-    auto& water = pore_records<T>(world, "water");
-    const auto& soil = pore_records<T>(world, "soil");
+    const auto water = write_records<Pore, T>(world, "water");
+    const auto soil = read_records<packed::SoilDrag<Dim>, T>(world, "soil");
     auto& n = water_->scalar(fields::water_fraction);
     auto& grains = water_->scalar(fields::soil_sum);
     auto& linear = water_->scalar(fields::drag_linear);
@@ -205,8 +230,8 @@ class WaterFraction final : public Effect<Dim> {
       std::array<double, block_size> share{};
       for (const std::string& set : walls_)
         gather_block<WallShare<Dim>::template Sums>(
-            world.list("water", set), b, world.records("water").template get<T>(),
-            world.records(set).template get<T>(), WallShare<Dim>{kernel},
+            world.list("water", set), b, read_records<Position<Dim>, T>(world, "water"),
+            read_records<packed::Wall<Dim>, T>(world, set), WallShare<Dim>{kernel},
             [&](Index i, const auto& s) {
               share[static_cast<std::size_t>(i - b * block_size)] += s.share;
             });
@@ -217,7 +242,7 @@ class WaterFraction final : public Effect<Dim> {
             const double free = 1 - s.grains / inside;
             n[i] = std::max(floor_, free);
             grains[i] = s.grains;
-            water[i][pore_slot::weight] = static_cast<T>(s.grains > 0 ? 1 / s.grains : 0);
+            water[i].put(Pore::weight, s.grains > 0 ? 1 / s.grains : 0);
             if (!(s.grains > 0)) return;
             // The share of the volume that is soil, pores and all: Darcy's law itself does not fade
             // where the soil ends.
@@ -235,27 +260,28 @@ class WaterFraction final : public Effect<Dim> {
   // sees sum_k P_ik of that.
   template <class T>
   void soil_masses(World<Dim>& world) {
-    const WeightedNumber<Dim> pair{Kernel<Dim>(water_->smoothing_length())};
+    using Soil = packed::SoilMobility<Dim>;
+    const Kernel<Dim> kernel(water_->smoothing_length());
     const SoilParameters& parts = world.parameters().soil;
     const auto& part = soil_->tag(fields::part);
     const auto& m = soil_->scalar(fields::mass);
-    auto& soil = pore_records<T>(world, "soil");
-    auto& water = pore_records<T>(world, "water");
+    const auto weights = read_records<Pore, T>(world, "soil");
+    const auto soil = write_records<Soil, T>(world, "soil");
+    const auto water = read_records<Pore, T>(world, "water");
     auto& inverse = water_->scalar(fields::inverse_soil_mass);
-    parallel_for(soil_->size(), [&](Index k) { soil[k][pore_slot::other] = T(0); });
-    gather<WeightedNumber<Dim>::template Sums>(
-        world.list("soil", "water"), soil, water, pair, [&](Index k, const auto& s) {
+    parallel_for(soil_->size(), [&](Index k) { soil[k].put(Soil::per_mass, 0); });
+    gather<WeightSum<Dim>::template Sums>(
+        world.list("soil", "water"), weights, water, WeightSum<Dim>{kernel},
+        [&](Index k, const auto& s) {
           if (parts[part[k]].moves)
-            soil[k][pore_slot::other] =
-                static_cast<T>(static_cast<double>(soil[k][pore_slot::weight]) * s.weight / m[k]);
+            soil[k].put(Soil::per_mass, weights.get(k, Pore::weight) * s.weight / m[k]);
         });
     const auto& grains = water_->scalar(fields::soil_sum);
     parallel_for(water_->size(), [&](Index i) { inverse[i] = 0; });
-    gather<WeightedNumber<Dim>::template Sums>(world.list("water", "soil"), water, soil, pair,
-                                               [&](Index i, const auto& s) {
-                                                 if (grains[i] > 0)
-                                                   inverse[i] = s.product / grains[i];
-                                               });
+    gather<MobilitySum<Dim>::template Sums>(world.list("water", "soil"), water, soil,
+                                            MobilitySum<Dim>{kernel}, [&](Index i, const auto& s) {
+                                              if (grains[i] > 0) inverse[i] = s.product / grains[i];
+                                            });
   }
 
   std::vector<std::string> walls_;  // sets of walls

@@ -9,27 +9,32 @@
 namespace sphgeo {
 namespace {
 
-/// Velocity and place at the end of the acoustic step (Eqs. 97, 98), and the step bounds of the
+/// Velocity and position at the end of the acoustic step (Eqs. 97, 98), and the step bounds of the
 /// water (Eqs. 91, 92).
 template <int Dim>
 class WaterKick final : public Effect<Dim> {
  public:
   static EffectInfo info() {
     return {"water_kick", Stage::kick, "Eqs. 91, 92, 97, 98",
-            "velocity and place at the end of the step; bounds of both clocks", false};
+            "velocity and position at the end of the step; bounds of both clocks", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
-    return {std::make_unique<WaterKick>(), "there is water"};
+    return {std::make_unique<WaterKick>(!world.frozen_geometry()), "there is water"};
   }
+
+  explicit WaterKick(bool current_geometry) : current_geometry_(current_geometry) {}
 
   std::string acts_on() const override { return "water"; }
   Needs needs() const override {
-    return {{{"water", &fields::velocity, Access::update},
+    Needs n{{{"water", &fields::velocity, Access::update},
              {"water", &fields::position, Access::update},
              {"water", &fields::acceleration, Access::write},
              {"water", &fields::acceleration_sum, Access::read}},
             {}};
+    n.record<Water>("water", Access::write, Water::velocity);
+    if (current_geometry_) n.record<Position<Dim>>("water", Access::update);
+    return n;
   }
 
   void prepare(World<Dim>& world) override { water_ = &world.set("water"); }
@@ -40,10 +45,9 @@ class WaterKick final : public Effect<Dim> {
     auto& v = water_->vector(fields::velocity);
     auto& a = water_->vector(fields::acceleration);
     const auto& sum = water_->vector(fields::acceleration_sum);
-    const bool repack = !world.frozen_geometry();
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& records = world.records("water").template get<T>();
+      const auto records = write_records<Water, T>(world, "water");
       fastest_.resize(static_cast<std::size_t>((water_->size() + block_size - 1) / block_size));
       parallel_blocks(water_->size(), block_size, [&](Index begin, Index end, Index b) {
         double fastest = 0;
@@ -52,13 +56,12 @@ class WaterKick final : public Effect<Dim> {
           v[i] += dt * sum[i];
           x[i] += 0.5 * dt * v[i];
           fastest = max_or_nan(fastest, v[i].squaredNorm());
-          T* slot = records[i];
-          for (int k = 0; k < Dim; ++k) slot[water_slot::velocity + k] = static_cast<T>(v[i][k]);
-          if (repack) records.set_position(i, x[i]);
+          records[i].put(Water::velocity, v[i]);
         }
         fastest_[static_cast<std::size_t>(b)] = fastest;
       });
     });
+    if (current_geometry_) world.pack_positions(*water_);
     arrangement_ = world.arrangement();
   }
 
@@ -82,6 +85,8 @@ class WaterKick final : public Effect<Dim> {
   }
 
  private:
+  using Water = packed::WaterState<Dim>;
+
   // The largest speed, m/s; NaN if there is one. The kick has looked at all, unless particles have
   // been lost or read from a file since then.
   double largest_speed(const World<Dim>& world) const {
@@ -92,6 +97,7 @@ class WaterKick final : public Effect<Dim> {
         water_->size(), [&](Index i) { return v[i].squaredNorm(); }, 0.0));
   }
 
+  bool current_geometry_;
   ParticleSet<Dim>* water_ = nullptr;
   std::vector<double> fastest_;  // largest squared speed of each block after the last kick
   long arrangement_ = -1;        // during which that kick was

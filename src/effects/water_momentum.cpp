@@ -8,6 +8,7 @@ namespace {
 /// the soil, and its sum is kept apart.
 template <int Dim, bool Viscous, bool Porous>
 struct MomentumPair {
+  using Water = packed::WaterState<Dim>;
   Kernel<Dim> kernel;
   RiemannFlux riemann;
   double two_eta;    ///< eta (n_i + n_j) with n = 1
@@ -25,19 +26,18 @@ struct MomentumPair {
   struct Sums : std::conditional_t<Porous && Viscous, Pores<T>, Clear<T>> {};
 
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T>& j,
+  void operator()(Sums<T>& sum, const Record<T, Water>& i, const Record<T, Water>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
-    using namespace water_slot;
-    const LaneVec<Dim, T> dv = i.vec(velocity) - j.vec(velocity);
+    const LaneVec<Dim, T> dv = i.vec(Water::velocity) - j.vec(Water::velocity);
     // U_L - U_R = -(v_i - v_j) . e (Eq. 62).
     const T approach = -(dot(dv, r) * inverse_length(r2));
-    const T gradient = kernel.dw_over_r(r2) * j[volume];
-    const T two_p_star = i[pressure] + j[pressure] + riemann.dissipation(approach);
+    const T gradient = kernel.dw_over_r(r2) * j[Water::volume];
+    const T two_p_star = i[Water::pressure] + j[Water::pressure] + riemann.dissipation(approach);
     sum.force -= (two_p_star * gradient) * r;
     // (n_i + n_j) V_j / n_i of Eq. 60, by Eq. 27 for equal masses.
     if constexpr (Viscous && Porous)
-      sum.friction += (T(0.5 * two_eta) * (gradient + kernel.dw_over_r(r2) * i[volume]) * r2 /
-                       (r2 + T(softening))) *
+      sum.friction += (T(0.5 * two_eta) * (gradient + kernel.dw_over_r(r2) * i[Water::volume]) *
+                       r2 / (r2 + T(softening))) *
                       dv;
     else if constexpr (Viscous)
       sum.force += (T(two_eta) * gradient * r2 / (r2 + T(softening))) * dv;
@@ -65,10 +65,11 @@ class WaterMomentum final : public Effect<Dim> {
   std::string acts_on() const override { return "water"; }
   Needs needs() const override {
     Needs n{{{"water", &fields::density, Access::read},
-             {"water", &fields::pressure, Access::read},
              {"water", &fields::acceleration_sum, Access::write}},
             {{"water", "water"}}};
     if (porous_) n.fields.push_back({"water", &fields::pressure_force, Access::write});
+    n.record<Position<Dim>>("water", Access::read);
+    n.record<packed::WaterState<Dim>>("water", Access::read);
     return n;
   }
 
@@ -96,7 +97,7 @@ class WaterMomentum final : public Effect<Dim> {
     Field<Vec<Dim>>* pressure_force =
         Porous ? &world.set("water").vector(fields::pressure_force) : nullptr;
     world.with_pair_precision([&](auto number) {
-      const auto& records = world.records("water").template get<decltype(number)>();
+      const auto records = read_records<packed::WaterState<Dim>, decltype(number)>(world, "water");
       gather<Pair::template Sums>(world.list("water", "water"), records, records, pair,
                                   [&](Index i, const auto& sum) {
                                     Vec<Dim> force = to_vec(sum.force);

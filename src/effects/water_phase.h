@@ -1,7 +1,8 @@
 #pragma once
-// What the effects of the water phase share: record layout, the Riemann flux.
+// What the effects of the water phase share: constants, scales, the Riemann flux.
 
 #include "effects/effect.h"
+#include "effects/water_packing.h"
 #include "sph/gather.h"
 #include "sph/kernel.h"
 #include "sph/parameters.h"
@@ -31,24 +32,15 @@ void need_volume_share(const World<Dim>& world, Needs& needs) {
 
 /// What the pair sums of gradients between water particles are multiplied by, as one factor for
 /// each side of a pair: 1 in clear water. In soil the particles are spread wider than the kernel
-/// was made for, and their sums see a linear field by several percent too weak. One factor a side
-/// leaves action and reaction equal. Walls have that of the water particle they meet, so that a
-/// constant pressure pushes nobody who lies evenly between water and wall. Null where there is no
-/// water in soil.
+/// was made for, and their sums give the gradient of a linear field several percent too small. One
+/// factor a side leaves action and reaction equal. Walls have that of the water particle they meet,
+/// so that a constant pressure does not push a particle that lies evenly between water and wall.
+/// Null where there is no water in soil.
 template <int Dim>
 const Field<double>* gradient_scale(const World<Dim>& world) {
   return volume_follows_porosity(world) ? &world.set("water").scalar(fields::gradient_scale)
                                         : nullptr;
 }
-
-/// Slots of a water record behind the position.
-namespace water_slot {
-inline constexpr int volume = 3;    ///< V (Eq. 27)
-inline constexpr int velocity = 4;  ///< v, Dim numbers
-inline constexpr int pressure = 7;  ///< p (Eq. 26)
-inline constexpr int pull = 8;      ///< g - dv/dt of the last step; in the second record, for walls
-inline constexpr int density = 12;  ///< rho; in the second record
-}  // namespace water_slot
 
 /// Value of the field `surface` where less than half the neighborhood of a particle is filled.
 inline constexpr std::int32_t spray = 2;

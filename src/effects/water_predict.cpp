@@ -5,21 +5,21 @@
 namespace sphgeo {
 namespace {
 
-/// Density and place at the middle of the acoustic step, pressure and volume there (Eqs. 26, 27,
+/// Density and position at the middle of the acoustic step, pressure and volume there (Eqs. 26, 27,
 /// 96).
 template <int Dim>
 class WaterPredict final : public Effect<Dim> {
  public:
   static EffectInfo info() {
     return {"water_predict", Stage::predict, "Eqs. 26, 27, 96",
-            "density, place, pressure and volume at the middle of the step", false};
+            "density, position, pressure and volume at the middle of the step", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
     if (!world.find("water")) return {"there is no water"};
     return {std::make_unique<WaterPredict>(world), "there is water"};
   }
 
-  explicit WaterPredict(const World<Dim>& world) {
+  explicit WaterPredict(const World<Dim>& world) : current_geometry_(!world.frozen_geometry()) {
     need_volume_share(world, volume_);
     if (volume_follows_porosity(world))
       volume_.fields.push_back({"water", &fields::gradient_scale, Access::read});
@@ -37,13 +37,12 @@ class WaterPredict final : public Effect<Dim> {
              {"water", &fields::volume, Access::write}},
             {}};
     n.fields.insert(n.fields.end(), volume_.fields.begin(), volume_.fields.end());
+    n.record<packed::WaterState<Dim>>("water", Access::write);
+    if (current_geometry_) n.record<Position<Dim>>("water", Access::update);
     return n;
   }
 
-  void prepare(World<Dim>& world) override {
-    water_ = &world.set("water");
-    world.records("water");
-  }
+  void prepare(World<Dim>& world) override { water_ = &world.set("water"); }
 
   void apply(World<Dim>& world) override {
     const WaterParameters& w = world.parameters().water;
@@ -58,25 +57,26 @@ class WaterPredict final : public Effect<Dim> {
     const auto& surface = water_->tag(fields::surface);
     const Field<double>* share = volume_share(world);
     const Field<double>* scale = gradient_scale(world);
-    const bool repack = !world.frozen_geometry();
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& records = world.records("water").template get<T>();
+      using Water = packed::WaterState<Dim>;
+      const auto records = write_records<Water, T>(world, "water");
       parallel_for(water_->size(), [&](Index i) {
         rho[i] += half * rate[i];
         x[i] += half * v[i];
         p[i] = c2 * (rho[i] - w.density);
-        // Drops that part bear no tension: it would hold a particle back over the whole advection
-        // step, until pairs are found anew, and let it go with more energy than it had.
+        // Negative pressure is cut off between drops that separate: it would hold a particle back
+        // over the whole advection step, until pairs are found anew, and let it go with more energy
+        // than it had.
         if (surface[i] == spray) p[i] = std::max(p[i], 0.0);
         volume[i] = m[i] / (share ? (*share)[i] * rho[i] : rho[i]);
-        T* slot = records[i];
-        slot[water_slot::volume] = static_cast<T>(scale ? volume[i] * (*scale)[i] : volume[i]);
-        slot[water_slot::pressure] = static_cast<T>(p[i]);
-        for (int k = 0; k < Dim; ++k) slot[water_slot::velocity + k] = static_cast<T>(v[i][k]);
-        if (repack) records.set_position(i, x[i]);
+        const auto record = records[i];
+        record.put(Water::volume, scale ? volume[i] * (*scale)[i] : volume[i]);
+        record.put(Water::pressure, p[i]);
+        record.put(Water::velocity, v[i]);
       });
     });
+    if (current_geometry_) world.pack_positions(*water_);
   }
 
   void bounds(const World<Dim>& world, std::vector<FieldBound>& watched) const override {
@@ -89,6 +89,7 @@ class WaterPredict final : public Effect<Dim> {
 
  private:
   Needs volume_;  // what the volume needs beside mass and density
+  bool current_geometry_;
   ParticleSet<Dim>* water_ = nullptr;
 };
 

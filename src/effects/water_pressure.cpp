@@ -5,7 +5,7 @@
 namespace sphgeo {
 namespace {
 
-/// Pressure and volume of the state at hand, for whoever looks at it between two steps.
+/// Pressure and volume of the current state, for observers between two steps.
 template <int Dim>
 class WaterPressure final : public Effect<Dim> {
  public:
@@ -28,6 +28,8 @@ class WaterPressure final : public Effect<Dim> {
              {"water", &fields::volume, Access::write}},
             {}};
     n.fields.insert(n.fields.end(), volume_.fields.begin(), volume_.fields.end());
+    n.record<Water>("water", Access::write, Water::velocity, Water::pressure);
+    n.record<Observed>("water", Access::write);
     return n;
   }
   void prepare(World<Dim>& world) override { water_ = &world.set("water"); }
@@ -41,20 +43,24 @@ class WaterPressure final : public Effect<Dim> {
     const Field<double>* share = volume_share(world);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      auto& records = world.records("water").template get<T>();
+      const auto records = write_records<Water, T>(world, "water");
+      const auto volumes = write_records<Observed, T>(world, "water");
       parallel_for(water_->size(), [&](Index i) {
         p[i] = w.sound_speed * w.sound_speed * (rho[i] - w.density);
         volume[i] = m[i] / (share ? (*share)[i] * rho[i] : rho[i]);
         // Pair sums of the observation, such as the force on a wall, read the records.
-        T* slot = records[i];
-        slot[water_slot::volume] = static_cast<T>(volume[i]);
-        slot[water_slot::pressure] = static_cast<T>(p[i]);
-        for (int k = 0; k < Dim; ++k) slot[water_slot::velocity + k] = static_cast<T>(v[i][k]);
+        const auto record = records[i];
+        volumes[i].put(Observed::volume, volume[i]);
+        record.put(Water::pressure, p[i]);
+        record.put(Water::velocity, v[i]);
       });
     });
   }
 
  private:
+  using Water = packed::WaterState<Dim>;
+  using Observed = packed::ObservedWater<Dim>;
+
   Needs volume_;  // what the volume needs beside mass and density
   ParticleSet<Dim>* water_ = nullptr;
 };

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "effects/effect.h"
 #include "effects/lattice_sums.h"
@@ -15,6 +16,7 @@ namespace {
 /// in soil also the gradient of the water fraction (Eq. 89).
 template <int Dim, bool Porous>
 struct ArrangementPair {
+  using Water = packed::RestingWater<Dim>;
   Kernel<Dim> kernel;
 
   template <class T>
@@ -29,28 +31,28 @@ struct ArrangementPair {
   };
   template <class T>
   struct Sums : std::conditional_t<Porous, Pores<T>, Clear<T>> {};
-  // Slots of the first record while this pass runs.
-  static constexpr int swelling = 4;  ///< volume for the transport over the target volume
-  static constexpr int fraction = 7;  ///< n^w
 
-  template <class T, int N, int M>
-  void operator()(Sums<T>& sum, const Record<Dim, T, N>& i, const Record<Dim, T, M>& j,
+  /// j is water at rest, or a wall.
+  template <class T, class Neighbor>
+  void operator()(Sums<T>& sum, const Record<T, Water>& i, const Record<T, Neighbor>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
     (void)i;
-    const T volume = j[water_slot::volume];
+    const T volume = j[Neighbor::volume];
     const T slope = kernel.dw_over_r(r2) * volume;
     sum.number += kernel.w(r2) * volume;
-    if constexpr (Porous) sum.gradient += (slope * j[swelling]) * r;
+    if constexpr (Porous) sum.gradient += (slope * j[Water::swelling]) * r;
     else sum.gradient += slope * r;
     for (int a = 0; a < Dim; ++a)
       for (int b = a; b < Dim; ++b) sum.moment[a][b] += slope * r[a] * r[b];
-    if constexpr (Porous) sum.fraction += (slope * (j[fraction] - i[fraction])) * r;
+    if constexpr (Porous) sum.fraction += (slope * (j[Water::fraction] - i[Water::fraction])) * r;
   }
 };
 
 /// The free surface around a particle: its share of the kernel and its mean normal.
 template <int Dim>
 struct SurfacePair {
+  using Water = packed::RestingWater<Dim>;
+  using Surface = packed::FreeSurface<Dim>;
   Kernel<Dim> kernel;
 
   template <class T>
@@ -60,16 +62,12 @@ struct SurfacePair {
   };
 
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>&, const Record<Dim, T, 2>& j,
+  void operator()(Sums<T>& sum, const Record<T, Water>&, const Record<T, Water, Surface>& j,
                   const LaneVec<Dim, T>&, const T& r2) const {
-    const T weight = kernel.w(r2) * j[water_slot::volume];
-    sum.share += weight * j[on_surface];
-    sum.normal += weight * j.vec(surface_normal);
+    const T weight = kernel.w(r2) * j[Water::volume];
+    sum.share += weight * j[Surface::on_surface];
+    sum.normal += weight * j.vec(Surface::normal);
   }
-  // Slots of the water's second record while this pass runs.
-  static constexpr int surface_normal = 8;
-  static constexpr int on_surface = 12;
-  static constexpr int gradient = 13;  ///< sum of grad W V, on its way to the displacement
 };
 
 template <int Dim>
@@ -98,14 +96,14 @@ struct Arrangement {
 /// 87, 88).
 ///
 /// In soil every sum is taken with the target volumes m / (rho0 n^w) of Eq. 88. So the density,
-/// too, is told by how far the particles are from the spacing that the porosity asks for. The
-/// print's sum of m W, divided by the particle's own n^w, compares a fraction that was smoothed
+/// too, follows from how far the particles are from the spacing that the porosity asks for. The
+/// paper's sum of m W, divided by the particle's own n^w, compares a fraction that was smoothed
 /// twice with one that was smoothed once: at a step of porosity they differ by several percent,
 /// which the equation of state would answer with pressures of several dynamic heads. And in pores
 /// the sum is only followed as fast as the water can flow there (see pore_share).
 ///
 /// The gradient of the shift weighs every particle as the pressure force does, with the scale of
-/// gradients: so the places that the shift leads to are those where a constant pressure has no
+/// gradients: so the positions that the shift leads to are those where a constant pressure has no
 /// resultant. Where the drag keeps particles from following the sum, it takes the volumes m / (rho
 /// n^w) of now. With those at rest (Eq. 88) it works against the compression of water at depth,
 /// without end: particles that stay where they are then have a velocity against it, and the drag of
@@ -129,12 +127,16 @@ class WaterReinitialization final : public Effect<Dim> {
   }
 
   explicit WaterReinitialization(const World<Dim>& world)
-      : walls_(wall_sets(world)), porous_(volume_follows_porosity(world)) {
+      : walls_(wall_sets(world)),
+        porous_(volume_follows_porosity(world)),
+        transport_(world.parameters().numerics.transport_velocity) {
     need_volume_share(world, volume_);
     if (!porous_) return;
     volume_.fields.push_back({"water", &fields::gradient_scale, Access::update});
-    if (world.parameters().numerics.transport_velocity)
+    if (transport_) {
       volume_.fields.push_back({"water", &fields::acceleration, Access::read});
+      volume_.fields.push_back({"water", &fields::drag_acceleration, Access::read, true});
+    }
     volume_.fields.push_back({"water", &fields::drag_linear, Access::read});
     volume_.fields.push_back({"water", &fields::drag_quadratic, Access::read});
   }
@@ -147,13 +149,17 @@ class WaterReinitialization final : public Effect<Dim> {
              {"water", &fields::surface, Access::write}},
             {{"water", "water"}}};
     n.fields.insert(n.fields.end(), volume_.fields.begin(), volume_.fields.end());
-    need_walls(n, "water", walls_);
+    using Water = packed::RestingWater<Dim>;
+    if (porous_) n.record<Water>("water", Access::scratch);
+    else n.record<Water>("water", Access::scratch, Water::volume);
+    n.record<Position<Dim>>("water", transport_ ? Access::update : Access::read);
+    if (transport_) n.record<packed::FreeSurface<Dim>>("water", Access::scratch);
+    need_wall_volumes<Dim>(n, "water", walls_);
     return n;
   }
 
   void prepare(World<Dim>& world) override {
     water_ = &world.set("water");
-    if (world.parameters().numerics.transport_velocity) world.records("water", 1);
     const Kernel<Dim> kernel(water_->smoothing_length());
     lattice_ = lattice_sums(kernel, water_->spacing()).number;
     moment_ = lattice_sums(kernel, water_->spacing()).moment;
@@ -165,17 +171,17 @@ class WaterReinitialization final : public Effect<Dim> {
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
       const bool summation = n.density_reinitialization == DensityReinitialization::summation;
-      if (porous_) sum_pairs<T, true>(world, summation, n.transport_velocity);
-      else sum_pairs<T, false>(world, summation, n.transport_velocity);
-      if (n.transport_velocity) shift<T>(world);
+      if (porous_) sum_pairs<T, true>(world, summation);
+      else sum_pairs<T, false>(world, summation);
+      if (transport_) shift<T>(world);
     });
-    if (n.transport_velocity) world.pack_positions(*water_);
+    if (transport_) world.pack_positions(*water_);
   }
 
  private:
   // Block by block, so that the sums of no more than a block are ever kept.
   template <class T, bool Porous>
-  void sum_pairs(World<Dim>& world, bool summation, bool transport) {
+  void sum_pairs(World<Dim>& world, bool summation) {
     using Sums = std::array<Arrangement<Dim>, block_size>;
     const double rho0 = world.parameters().water.density;
     const auto& m = water_->scalar(fields::mass);
@@ -186,27 +192,31 @@ class WaterReinitialization final : public Effect<Dim> {
     auto& rho = water_->scalar(fields::density);
     Field<double>* scale = Porous ? &water_->scalar(fields::gradient_scale) : nullptr;
     const bool by_target = world.parameters().numerics.transport_target_volume;
-    auto& records = world.records("water").template get<T>();
+    using Water = packed::RestingWater<Dim>;
+    const auto records = write_records<Water, T>(world, "water");
     // The volume at rest, so that compression does not feed back on the arrangement.
     parallel_for(water_->size(), [&](Index i) {
-      records[i][water_slot::volume] = static_cast<T>(at_rest(i));
+      const auto record = records[i];
+      record.put(Water::volume, at_rest(i));
       if constexpr (Porous) {
-        records[i][pair.fraction] = static_cast<T>((*n)[i]);
+        record.put(Water::fraction, (*n)[i]);
         const double before = (*scale)[i] > 0 ? (*scale)[i] : 1;
         const double held = (*n)[i] < 1 ? 1 - pore_share(world, i) : 0;
-        records[i][pair.swelling] =
-            static_cast<T>(before * (by_target ? 1 + held * (rho0 / rho[i] - 1) : (*n)[i]));
+        record.put(Water::swelling,
+                   before * (by_target ? 1 + held * (rho0 / rho[i] - 1) : (*n)[i]));
       }
     });
-    const auto walk = [&](const NeighborList& list, const Records<Dim, T>& sources,
-                          const auto& with_pair, Index b, Sums& sums) {
+    const auto walk = [&](const NeighborList& list, const auto& sources, const auto& with_pair,
+                          Index b, Sums& sums) {
       gather_block<std::decay_t<decltype(with_pair)>::template Sums>(
           list, b, records, sources, with_pair, [&](Index i, const auto& s) {
             sums[static_cast<std::size_t>(i - b * block_size)].add(s);
           });
     };
     const NeighborList& water = world.list("water", "water");
-    Records<Dim, T>* second = transport ? &world.records("water", 1).template get<T>() : nullptr;
+    using Surface = packed::FreeSurface<Dim>;
+    std::optional<RecordPacking<Surface, T>> surfaces;
+    if (transport_) surfaces = write_records<Surface, T>(world, "water");
     const double self = pair.kernel.w(0.0), volume_at_dp = std::pow(water_->spacing(), Dim);
     auto& surface = water_->tag(fields::surface);
     parallel_blocks(water_->size(), block_size, [&](Index begin, Index end, Index b) {
@@ -216,7 +226,8 @@ class WaterReinitialization final : public Effect<Dim> {
         for (Index i = begin; i < end; ++i)
           sums[static_cast<std::size_t>(i - begin)].gradient /= (*scale)[i] > 0 ? (*scale)[i] : 1;
       for (const std::string& set : walls_)
-        walk(world.list("water", set), world.records(set).template get<T>(), wall_pair, b, sums);
+        walk(world.list("water", set), read_records<packed::Wall<Dim>, T>(world, set), wall_pair, b,
+             sums);
       for (Index i = begin; i < end; ++i) {
         const Arrangement<Dim>& s = sums[static_cast<std::size_t>(i - begin)];
         // The divergence of position is Dim in the bulk; three quarters of it tell the surface,
@@ -234,14 +245,16 @@ class WaterReinitialization final : public Effect<Dim> {
           const bool in_pores = Porous && (*n)[i] < 1;
           // A sum that falls short is a surface or a splash, not a rarefaction: it keeps its
           // density, up to the factor by which rho exceeds rho0.
-          const double told = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
-          rho[i] =
-              in_pores ? rho[i] + pore_change(pore_share(world, i), told - rho[i], rho0) : told;
-          // A free surface bears no tension; a lonely particle would be drawn into a wall by it.
+          const double summed_density = summed + std::max(0.0, rho[i] - summed) * rho0 / rho[i];
+          rho[i] = in_pores
+                       ? rho[i] + pore_change(pore_share(world, i), summed_density - rho[i], rho0)
+                       : summed_density;
+          // Negative pressure is cut off at the free surface: an isolated particle would be
+          // attracted to the wall.
           if (surface[i]) rho[i] = std::max(rho[i], rho0);
         }
-        if (second)
-          pack_surface((*second)[i] - record_size, surface[i] != 0, s,
+        if (surfaces)
+          pack_surface((*surfaces)[i], surface[i] != 0, s,
                        Porous ? projected(world, s) : s.gradient);
       }
     });
@@ -249,15 +262,12 @@ class WaterReinitialization final : public Effect<Dim> {
 
   // What the shift needs of one particle.
   template <class T>
-  static void pack_surface(T* slot, bool surface, const Arrangement<Dim>& s,
-                           const Vec<Dim>& gradient) {
-    using Pair = SurfacePair<Dim>;
-    const Vec<Dim> normal = surface ? surface_normal(s) : Vec<Dim>::Zero();
-    slot[Pair::on_surface] = surface ? T(1) : T(0);
-    for (int k = 0; k < Dim; ++k) {
-      slot[Pair::surface_normal + k] = static_cast<T>(normal[k]);
-      slot[Pair::gradient + k] = static_cast<T>(gradient[k]);
-    }
+  static void pack_surface(const PackedRecord<packed::FreeSurface<Dim>, T>& record, bool surface,
+                           const Arrangement<Dim>& s, const Vec<Dim>& gradient) {
+    using Surface = packed::FreeSurface<Dim>;
+    record.put(Surface::normal, surface ? surface_normal(s) : Vec<Dim>(Vec<Dim>::Zero()));
+    record.put(Surface::on_surface, surface ? 1.0 : 0.0);
+    record.put(Surface::gradient, gradient);
   }
 
   // How much of the sum's density a particle in pores takes over. Particles never lie so evenly
@@ -303,10 +313,10 @@ class WaterReinitialization final : public Effect<Dim> {
     return s.gradient - normal.dot(s.gradient) * normal;
   }
 
-  // Eq. 87 with the sign that leads away from crowded places. Wherever the kernel reaches the free
-  // surface, its truncation looks like a rarefaction, much stronger than any real one. Eq. 87 keeps
-  // the part along the surface; as the normal is never exact, what is left stirs still water
-  // (kinetic energy three times as high, 15 spacings deep in 3D), so the default leaves these
+  // Eq. 87 with the sign that leads away from dense regions. Wherever the kernel reaches
+  // the free surface, its truncation looks like a rarefaction, much stronger than any real one. Eq.
+  // 87 keeps the part along the surface; as the normal is never exact, what is left stirs still
+  // water (kinetic energy three times as high, 15 spacings deep in 3D), so the default leaves these
   // particles alone.
   template <class T>
   void shift(World<Dim>& world) {
@@ -323,25 +333,25 @@ class WaterReinitialization final : public Effect<Dim> {
                                       : nullptr;
     auto& rho = water_->scalar(fields::density);
     const double sound = world.parameters().water.sound_speed;
-    const auto& first = world.records("water", 0).template get<T>();
-    const auto& second = world.records("water", 1).template get<T>();
+    using Surface = packed::FreeSurface<Dim>;
+    const auto first = read_records<packed::RestingWater<Dim>, T>(world, "water");
+    const auto second = read_records<Surface, T>(world, "water");
     gather<Pair::template Sums>(world.list("water", "water"), first, with(first, second),
                                 Pair{Kernel<Dim>(h)}, [&](Index i, const auto& near) {
-                                  const T* slot = second[i] - record_size;
-                                  const bool surface = slot[Pair::on_surface] > 0;
+                                  const bool surface = second.get(i, Surface::on_surface) > 0;
                                   Vec<Dim> move, normal;
                                   for (int k = 0; k < Dim; ++k) {
-                                    move[k] =
-                                        -factor * static_cast<double>(slot[Pair::gradient + k]);
-                                    normal[k] = static_cast<double>(slot[Pair::surface_normal + k]);
+                                    move[k] = -factor * second.get(i, Surface::gradient, k);
+                                    normal[k] = second.get(i, Surface::normal, k);
                                   }
                                   if (surface || near.share > 0) {
                                     if (!tangential) return;
                                     // The list leaves the particle itself out.
                                     const double weight = near.share + (surface ? 1.0 : 0.0);
                                     const Vec<Dim> mean = to_vec(near.normal) + normal;
-                                    // Surfaces that face each other, as of a thin film or a lonely
-                                    // particle, leave no direction along which anything may move.
+                                    // Surfaces that face each other, as of a thin film or an
+                                    // isolated particle, leave no direction along which anything
+                                    // may move.
                                     const double length = mean.norm();
                                     if (length < 0.5 * weight) return;
                                     move -= (mean.dot(move) / (length * length)) * mean;
@@ -352,9 +362,9 @@ class WaterReinitialization final : public Effect<Dim> {
                                     // drag), and takes it over. Were it to keep its own, it would
                                     // flow back, for ever, and the soil would feel the drag of that
                                     // flow.
-                                    Vec<Dim> pull = world.pull(x[i]) - (*a)[i];
-                                    if (drag) pull += (*drag)[i];
-                                    rho[i] += rho[i] * pull.dot(move) / (sound * sound);
+                                    Vec<Dim> gradient = world.body_acceleration(x[i]) - (*a)[i];
+                                    if (drag) gradient += (*drag)[i];
+                                    rho[i] += rho[i] * gradient.dot(move) / (sound * sound);
                                   }
                                 });
   }
@@ -367,7 +377,7 @@ class WaterReinitialization final : public Effect<Dim> {
   }
 
   std::vector<std::string> walls_;  // sets of walls
-  bool porous_;
+  bool porous_, transport_;
   Needs volume_;  // what the target volume needs beside the mass
   std::unique_ptr<SpreadLattice<Dim>> spread_;
   ParticleSet<Dim>* water_ = nullptr;

@@ -5,7 +5,8 @@
 namespace sphgeo {
 namespace {
 
-template <int Dim>
+/// `Moving` is the record with the velocity: packed::WaterState, or packed::Mixture in soil.
+template <int Dim, class Moving>
 struct WallDivergence {
   WallPair<Dim> wall;
 
@@ -14,7 +15,7 @@ struct WallDivergence {
     T divergence{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T, 2>& j,
+  void operator()(Sums<T>& sum, const Record<T, Moving>& i, const WallRecord<Dim, T>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
     sum.divergence += wall.divergence(i, j, r, r2);
   }
@@ -39,19 +40,32 @@ class WaterWallContinuity final : public Effect<Dim> {
   Needs needs() const override {
     Needs n{
         {{"water", &fields::density, Access::read}, {"water", &fields::density_rate, Access::add}},
-        {}};
-    need_walls(n, "water", {walls_});
+        {{"water", walls_}}};
+    n.record<Position<Dim>>("water", Access::read);
+    need_wall_records<Dim>(n, walls_);
+    // The mixture's velocity lies over the state of the water, whose other numbers come with it.
+    using Water = packed::WaterState<Dim>;
     if (porous_) {
       n.fields.push_back({"water", &fields::water_fraction, Access::read});
-      n.fields.push_back(
-          {"water", &fields::soil_velocity, Access::read});  // the records hold the mixture's
+      n.record<Water>("water", Access::read, Water::volume, Water::pressure);
+      n.record<packed::Mixture<Dim>>("water", Access::read);
+    } else {
+      n.record<Water>("water", Access::read, Water::velocity);
     }
     return n;
   }
   void prepare(World<Dim>& world) override { water_ = &world.set("water"); }
 
   void apply(World<Dim>& world) override {
-    const WallDivergence<Dim> pair{
+    if (porous_) run<packed::Mixture<Dim>>(world);
+    else run<packed::WaterState<Dim>>(world);
+  }
+
+ private:
+  template <class Moving>
+  void run(World<Dim>& world) {
+    using Pair = WallDivergence<Dim, Moving>;
+    const Pair pair{
         WallPair<Dim>(world.parameters().water, water_->smoothing_length(), water_->spacing())};
     const auto& rho = water_->scalar(fields::density);
     auto& rate = water_->scalar(fields::density_rate);
@@ -59,18 +73,15 @@ class WaterWallContinuity final : public Effect<Dim> {
     const Field<double>* scale = gradient_scale(world);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      gather<WallDivergence<Dim>::template Sums>(
-          world.list("water", walls_), world.records("water").template get<T>(),
-          with(world.records(walls_, 0).template get<T>(),
-               world.records(walls_, 1).template get<T>()),
-          pair, [&](Index i, const auto& sum) {
+      gather<Pair::template Sums>(
+          world.list("water", walls_), read_records<Moving, T>(world, "water"),
+          wall_records<T>(world, walls_), pair, [&](Index i, const auto& sum) {
             rate[i] += rho[i] *
                        (n ? (*scale)[i] * (*scale)[i] * sum.divergence / (*n)[i] : sum.divergence);
           });
     });
   }
 
- private:
   std::string walls_;
   bool porous_;
   ParticleSet<Dim>* water_ = nullptr;

@@ -1,6 +1,6 @@
+#include "effects/water_wall_force.h"
 #include "effects/effect.h"
 #include "effects/wall_sets.h"
-#include "effects/water_pull.h"
 
 namespace sphgeo {
 namespace {
@@ -14,7 +14,7 @@ struct WallForceOnWater {
     LaneVec<Dim, T> force{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T, 2>& i, const Record<Dim, T, 2>& j,
+  void operator()(Sums<T>& sum, const WaterAtWall<Dim, T>& i, const WallRecord<Dim, T>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
     sum.force += wall.force(i, j, r, r2);
   }
@@ -30,7 +30,7 @@ struct WallForceOnPoreWater {
     LaneVec<Dim, T> pressure{}, friction{};
   };
   template <class T>
-  void operator()(Sums<T>& sum, const Record<Dim, T, 2>& i, const Record<Dim, T, 2>& j,
+  void operator()(Sums<T>& sum, const WaterAtWall<Dim, T>& i, const WallRecord<Dim, T>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
     sum.pressure += wall.pressure(i, j, r, r2);
     sum.friction += wall.friction(i, j, r2);
@@ -56,20 +56,16 @@ class WaterWallForce final : public Effect<Dim> {
 
   std::string acts_on() const override { return near_walls("water", walls_); }
   Needs needs() const override {
-    Needs n{{{"water", &fields::density, Access::read},
-             {"water", &fields::pressure, Access::read},
-             {"water", &fields::acceleration, Access::read},
-             {"water", &fields::acceleration_sum, Access::add}},
-            {}};
-    need_walls(n, "water", {walls_});
+    Needs n{{{"water", &fields::acceleration_sum, Access::add}}, {{"water", walls_}}};
+    need_pressure_gradient<Dim>(n);
+    n.record<Position<Dim>>("water", Access::read);
+    n.record<packed::WaterState<Dim>>("water", Access::read);
+    need_wall_records<Dim>(n, walls_);
     n.fields.insert(n.fields.end(), volume_.fields.begin(), volume_.fields.end());
     if (porous_) n.fields.push_back({"water", &fields::pressure_force, Access::add});
     return n;
   }
-  void prepare(World<Dim>& world) override {
-    water_ = &world.set("water");
-    world.records("water", 1);
-  }
+  void prepare(World<Dim>& world) override { water_ = &world.set("water"); }
 
   void apply(World<Dim>& world) override {
     if (porous_) run<WallForceOnPoreWater<Dim>>(world);
@@ -90,14 +86,11 @@ class WaterWallForce final : public Effect<Dim> {
     const NeighborList& list = world.list("water", walls_);
     world.with_pair_precision([&](auto number) {
       using T = decltype(number);
-      pack_water_pull(world, list, world.records("water", 1).template get<T>());
+      const auto gradient = write_records<packed::PressureGradient<Dim>, T>(world, "water");
+      pack_pressure_gradient(world, list, gradient);
       gather<Pair::template Sums>(
-          list,
-          with(world.records("water", 0).template get<T>(),
-               world.records("water", 1).template get<T>()),
-          with(world.records(walls_, 0).template get<T>(),
-               world.records(walls_, 1).template get<T>()),
-          pair, [&](Index i, const auto& sum) {
+          list, with<T>(read_records<packed::WaterState<Dim>, T>(world, "water"), gradient),
+          wall_records<T>(world, walls_), pair, [&](Index i, const auto& sum) {
             if constexpr (porous) {
               Vec<Dim> pressure = to_vec(sum.pressure);
               if (scale) pressure *= (*scale)[i] * (*scale)[i];

@@ -15,8 +15,8 @@
 namespace sphgeo {
 namespace {
 
-/// The speed by which a piston takes up waves that come back to it: that of water under a wave as
-/// high as what gauges before the piston see beyond its own waves (Schaeffer and Klopman 2000).
+/// Active wave absorption. The speed that is added to a piston: that of water under a wave as
+/// high as what gauges before the piston measure beyond its own waves (Schaeffer and Klopman 2000).
 /// wall_motion moves it.
 template <int Dim>
 class WaveAbsorption final : public Effect<Dim> {
@@ -25,18 +25,18 @@ class WaveAbsorption final : public Effect<Dim> {
   WaveAbsorption(const BoundaryMotion& piston, std::int32_t part)
       : piston_(piston), part_(part), waves_(*piston.motion->waves) {}
   static EffectInfo info() {
-    return {"wave_absorption", Stage::exchange, "prescribed",
-            "what a piston moves to take up waves that come back to it", false};
+    return {"wave_absorption", Stage::exchange, "prescribed", "active wave absorption of pistons",
+            false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    Binding<Dim> binding("no boundary takes up waves");
+    Binding<Dim> binding("no boundary absorbs waves");
     if (!world.find("water") || !world.find("walls")) return binding;
     const std::vector<BoundaryMotion>& walls = world.parameters().boundary_motions;
     for (std::size_t k = 0; k < walls.size(); ++k)
       if (walls[k].absorbs_waves) {
         binding.effects.push_back(
             std::make_unique<WaveAbsorption>(walls[k], static_cast<std::int32_t>(k)));
-        binding.because = "boundary '" + walls[k].name + "' takes up waves";
+        binding.because = "boundary '" + walls[k].name + "' absorbs waves";
       }
     return binding;
   }
@@ -73,7 +73,7 @@ class WaveAbsorption final : public Effect<Dim> {
         waves_.direction.dot(motion.position(front_, now) - front_) + state_->shift + ahead();
     const double seen = *level - waves_.elevation(distance, now - motion.from) -
                         waves_.evanescent(distance) * state_->shift;
-    // The level is told from its own slow mean: water at rest, and what waves pile up, must not
+    // The level counts from its own slow mean: water at rest, and the set-up by waves, must not
     // make the piston drift.
     const double slow = 5 * waves_.period;
     mean_ = !begun_ ? seen : mean_ + (seen - mean_) * -std::expm1(-passed / slow);
@@ -179,7 +179,7 @@ class WaveAbsorption final : public Effect<Dim> {
   Vec3 front_ = Vec3::Zero();  ///< a point of the piston's face at rest
   std::vector<Vec3> gauges_;   ///< along the face, from there
   PistonState* state_ = nullptr;
-  double mean_ = 0;     ///< slow mean of what the gauges see, m
+  double mean_ = 0;     ///< slow mean of the gauges, m
   bool begun_ = false;  ///< whether there is one
   double last_ = 0;     ///< time of the last call, s
   ParticleSet<Dim>* water_ = nullptr;

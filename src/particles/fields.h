@@ -13,7 +13,7 @@ inline constexpr FieldSpec id{"id", FieldType::identity, state, unit::none,
 inline constexpr FieldSpec part{"part", tag, state, unit::none,
                                 "index of the body or boundary of the deck"};
 inline constexpr FieldSpec position{"position", vector, state, unit::length,
-                                    "place of the particle"};
+                                    "position of the particle"};
 inline constexpr FieldSpec velocity{"velocity", vector, state, unit::speed, "velocity"};
 inline constexpr FieldSpec acceleration{"acceleration", vector, state, unit::acceleration,
                                         "acceleration of the last acoustic step"};
@@ -35,7 +35,7 @@ inline constexpr FieldSpec surface{
     "1 on the free surface, 2 in spray: less than half the neighborhood is filled"};
 inline constexpr FieldSpec normal{"normal", vector, state, unit::none, "outward normal of a wall"};
 inline constexpr FieldSpec reference_position{"reference_position", vector, reference, unit::length,
-                                              "place at t = 0"};
+                                              "position at t = 0"};
 inline constexpr FieldSpec reference_normal{"reference_normal", vector, reference, unit::none,
                                             "normal at t = 0"};
 inline constexpr FieldSpec no_slip{"no_slip", scalar, reference, unit::none,
@@ -54,8 +54,8 @@ inline constexpr FieldSpec initial_volume_fraction{"initial_volume_fraction", sc
                                                    unit::none, "volume fraction at t = 0"};
 inline constexpr FieldSpec stress{"stress", tensor, state, unit::pressure,
                                   "effective stress, tension positive: xx, yy, zz, xy, yz, xz"};
-inline constexpr FieldSpec crowding{
-    "crowding", scalar, derived, unit::none,
+inline constexpr FieldSpec number_density_ratio{
+    "number_density_ratio", scalar, derived, unit::none,
     "sum over neighbors at their volume at rest, over that of a lattice"};
 inline constexpr FieldSpec gradient_correction{
     "gradient_correction", tensor, state, unit::none,
@@ -109,24 +109,24 @@ inline constexpr FieldSpec reference_correction{
     "inverse moment of the kernel gradient at rest, Eq. 66: xx, yy, zz, xy, yz, xz"};
 inline constexpr FieldSpec source{
     "source", tag, reference, unit::none,
-    "id of the particle of a solid that a particle of the skin follows"};
+    "id of the particle of a solid that a interface particle follows"};
 inline constexpr FieldSpec source_set{"source_set", tag, reference, unit::none,
                                       "number of that solid's set"};
 // Saved: a probe that is due right after a run went on reads those of the step before.
 inline constexpr FieldSpec water_force{"water_force", vector, state, unit::force,
-                                       "force of water on a particle of the skin"};
+                                       "force of water on a interface particle"};
 inline constexpr FieldSpec soil_force{"soil_force", vector, state, unit::force,
-                                      "force of soil on a particle of the skin"};
+                                      "force of soil on a interface particle"};
 inline constexpr FieldSpec mean_water_force{"mean_water_force", vector, state, unit::force,
                                             "water_force, mean over the advection step"};
 inline constexpr FieldSpec mean_soil_force{"mean_soil_force", vector, state, unit::force,
                                            "soil_force, mean over the advection step"};
 inline constexpr FieldSpec contact_force{
     "contact_force", vector, state, unit::force,
-    "force of other solids and of walls on a particle of the skin"};
+    "force of other solids and of walls on a interface particle"};
 inline constexpr FieldSpec contact_energy{
     "contact_energy", scalar, state, unit::energy,
-    "energy stored in the contacts of a particle of the skin; J per metre of depth in 2D"};
+    "energy stored in the contacts of a interface particle; J per metre of depth in 2D"};
 inline constexpr FieldSpec fluid_force{"fluid_force", vector, derived, unit::force,
                                        "force of water and soil on a particle of a solid"};
 inline constexpr FieldSpec cauchy_stress{
@@ -161,7 +161,7 @@ inline constexpr const FieldSpec* all[] = {&id,
                                            &volume_fraction_rate,
                                            &initial_volume_fraction,
                                            &stress,
-                                           &crowding,
+                                           &number_density_ratio,
                                            &gradient_correction,
                                            &plastic_strain,
                                            &plastic_work,

@@ -7,36 +7,38 @@
 #include <set>
 #include <stdexcept>
 
+#include "plan/record_plan.h"
 #include "sph/parameters.h"
 
 namespace sphgeo {
 namespace {
 
 bool produces(Access a) { return a == Access::write; }
-bool reads(Access a) { return a == Access::read || a == Access::update; }
+bool reads(Access a) { return a == Access::read || a == Access::update || a == Access::previous; }
 
 bool same(const FieldUse& a, const FieldUse& b) { return a.set == b.set && a.field == b.field; }
 
-// Order within a stage: write before add, both before update, all before read.
+// Order within a stage: who reads the previous value, then write, add, update, read.
 int rank(Access a) {
   switch (a) {
-    case Access::write:
+    case Access::previous:
       return 0;
-    case Access::add:
+    case Access::write:
       return 1;
-    case Access::update:
+    case Access::add:
       return 2;
-    case Access::read:
+    case Access::update:
       return 3;
+    default:
+      return 4;
   }
-  return 3;
 }
 
 bool must_precede(const Needs& first, const Needs& second) {
   for (const FieldUse& a : first.fields)
     for (const FieldUse& b : second.fields)
       if (same(a, b) && rank(a.access) < rank(b.access)) return true;
-  return false;
+  return records_precede(first.records, second.records);
 }
 
 }  // namespace
@@ -45,12 +47,16 @@ template <int Dim>
 Plan<Dim>::Plan(World<Dim>& world, const std::vector<Wish>& wishes) : world_(world) {
   bind(wishes);
   for (auto& e : effects_) {
-    for (const FieldUse& use : e.needs.fields) world_.set(use.set).require(*use.field);
+    for (const FieldUse& use : e.needs.fields)
+      if (!use.optional) world_.set(use.set).require(*use.field);
+    for (const RecordUse& use : e.needs.records)
+      world_.records().require(use.set, use.record->array);
     for (const ListUse& list : e.needs.lists) world_.require_list(list.target, list.source);
     for (const std::string& set : e.needs.reference_lists) world_.require_reference_list(set);
   }
   check_producers(wishes);
   order();
+  check_records(records());
   for (auto& e : effects_) e.effect->prepare(world_);
   for (auto& e : effects_) {
     const auto& lists = e.needs.lists;
@@ -89,11 +95,15 @@ void Plan<Dim>::bind(const std::vector<Wish>& wishes) {
         // What is made for observers serves no one but observers.
         if (candidate.info.stage == Stage::observe && e.info.stage != Stage::observe) continue;
         for (const FieldUse& use : e.needs.fields)
-          if (same(made, use) && reads(use.access)) return "effect " + e.info.name;
+          if (same(made, use) && reads(use.access) && !use.optional) return "effect " + e.info.name;
       }
       for (const Wish& w : wishes)
         if (w.set == made.set && w.field == made.field->name) return w.who;
     }
+    for (const auto& e : effects_)
+      if ((candidate.info.stage != Stage::observe || e.info.stage == Stage::observe) &&
+          serves_records(candidate.needs.records, e.needs.records))
+        return "effect " + e.info.name;
     return {};
   };
   for (bool changed = true; changed;) {
@@ -125,6 +135,16 @@ void Plan<Dim>::check_producers(const std::vector<Wish>& wishes) const {
             if (other.info.stage == e.info.stage) same_stage.push_back(other.info.name);
           }
       const bool derived = use.field->lifetime == Lifetime::derived;
+      if (use.optional && writers.empty()) continue;
+      if (use.access == Access::previous && derived)
+        throw std::logic_error(fmt::format(
+            "plan: effect '{}' needs the previous value of field '{}' of set '{}', which is not "
+            "saved",
+            e.info.name, use.field->name, use.set));
+      if (use.access == Access::scratch)
+        throw std::logic_error(fmt::format(
+            "plan: effect '{}' names field '{}' of set '{}' as scratch: only records are",
+            e.info.name, use.field->name, use.set));
       if (derived && !produces(use.access) && writers.empty())
         throw std::logic_error(
             fmt::format("plan: effect '{}' needs field '{}' of set '{}', which no effect computes",
@@ -184,6 +204,7 @@ template <int Dim>
 void Plan<Dim>::run(Stage stage) {
   for (auto& e : effects_) {
     if (e.info.stage != stage) continue;
+    const typename RecordStore<Dim>::Running running(world_.records(), e.label, e.needs.records);
     {
       const Stopwatch watch(e.spent, e.calls);
       e.effect->apply(world_);
@@ -266,8 +287,18 @@ void Plan<Dim>::save_within_step(StateSink& sink) const {
 template <int Dim>
 void Plan<Dim>::load_within_step(const StateSource& source) {
   for (const auto& [name, field] : ready_fields()) field->load(source, "within_step/" + name);
-  for (auto& e : effects_)
-    if (e.info.stage == Stage::reinitialize) e.effect->restore(world_);
+  for (auto& e : effects_) {
+    if (e.info.stage != Stage::reinitialize) continue;
+    const typename RecordStore<Dim>::Running running(world_.records(), e.label, e.needs.records);
+    e.effect->restore(world_);
+  }
+}
+
+template <int Dim>
+std::vector<EffectRecords> Plan<Dim>::records() const {
+  std::vector<EffectRecords> all;
+  for (const auto& e : effects_) all.push_back({e.label, e.info.stage, &e.needs.records});
+  return all;
 }
 
 template <int Dim>

@@ -9,6 +9,7 @@
 
 #include "core/stopwatch.h"
 #include "effects/effect.h"
+#include "plan/record_plan.h"
 
 namespace sphgeo {
 
@@ -43,10 +44,10 @@ struct UnusedEffect {
 template <int Dim>
 class Plan {
  public:
-  /// Binds all registered effects to the world, allocates the union of their fields, declares the
-  /// union of their lists and orders them. Throws std::logic_error that names effect, set and field
-  /// when a derived field has no producer or two in one stage, or when writers and readers form a
-  /// cycle.
+  /// Binds all registered effects to the world, allocates the union of their fields and records,
+  /// declares the union of their lists and orders them. Throws std::logic_error that names effect,
+  /// set and field (or record) when a derived field or a record has no producer or two in one
+  /// stage, or when writers and readers form a cycle.
   Plan(World<Dim>& world, const std::vector<Wish>& wishes);
 
   /// Runs all effects of the stage, timing each.
@@ -59,6 +60,8 @@ class Plan {
 
   const std::vector<PlannedEffect<Dim>>& effects() const { return effects_; }
   const std::vector<UnusedEffect>& unused() const { return unused_; }
+  /// What they do with packed records, in the order of running.
+  std::vector<EffectRecords> records() const;
 
   /// What effects keep from step to step; calls and seconds of the time table, so that they go on
   /// after a restart.

@@ -71,13 +71,13 @@ struct BodyForceProbe final : Probe {
     const auto each = static_cast<std::size_t>(scene.dimension() == 2 ? 3 : 6);
     for (std::size_t k = 0; k < sources.size(); ++k) {
       Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
-      if (scene.has_field("skin", *sources[k].field)) {
-        const auto f = scene.vector("skin", *sources[k].field),
-                   x = scene.vector("skin", fields::position);
-        const auto part = scene.tag("skin", fields::part);
+      if (scene.has_field("interface", *sources[k].field)) {
+        const auto f = scene.vector("interface", *sources[k].field),
+                   x = scene.vector("interface", fields::position);
+        const auto part = scene.tag("interface", fields::part);
         const auto on = [&](Index i) -> Vec3 { return part(i) == wanted ? f(i) : Vec3::Zero(); };
-        force = ordered_sum(scene.size("skin"), on);
-        torque = ordered_sum(scene.size("skin"),
+        force = ordered_sum(scene.size("interface"), on);
+        torque = ordered_sum(scene.size("interface"),
                              [&](Index i) -> Vec3 { return (x(i) - center).cross(on(i)); });
       }
       store_vector(scene, force, out, k * each);

@@ -38,17 +38,17 @@ struct PenetrationProbe final : Probe {
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     out[0] = out[1] = 0.0;
-    if (!scene.has_set("skin")) return;
+    if (!scene.has_set("interface")) return;
     const std::int32_t wanted = body.empty() ? -1 : body_index(scene.model(), body);
-    const auto part = scene.tag("skin", fields::part);
-    const auto x = scene.vector("skin", fields::position);
-    const auto volume = scene.scalar("skin", fields::reference_volume);
+    const auto part = scene.tag("interface", fields::part);
+    const auto x = scene.vector("interface", fields::position);
+    const auto volume = scene.scalar("interface", fields::reference_volume);
     const auto spacing = [&](Index i) { return std::pow(volume(i), 1.0 / scene.dimension()); };
     const bool walls = scene.has_set("walls");
-    for (Index i = 0; i < scene.size("skin"); ++i) {
+    for (Index i = 0; i < scene.size("interface"); ++i) {
       const std::int32_t own = part(i);
       if (wanted >= 0 && own != wanted) continue;
-      const Patch mine = patch(scene, "skin", x(i), [&](Index j) { return part(j) == own; });
+      const Patch mine = patch(scene, "interface", x(i), [&](Index j) { return part(j) == own; });
       const auto against = [&](const Patch& theirs, double theirs_spacing) {
         if (theirs.nearest < 0) return;
         const double mean = 0.5 * (spacing(i) + theirs_spacing);
@@ -56,7 +56,7 @@ struct PenetrationProbe final : Probe {
         out[0] = std::max(*out[0], depth);
         out[1] = std::max(*out[1], depth / mean);
       };
-      const Patch others = patch(scene, "skin", x(i), [&](Index j) { return part(j) != own; });
+      const Patch others = patch(scene, "interface", x(i), [&](Index j) { return part(j) != own; });
       if (others.nearest >= 0) against(others, spacing(others.nearest));
       if (walls)
         against(patch(scene, "walls", x(i), [](Index) { return true; }), scene.spacing("walls"));

@@ -37,10 +37,10 @@ inline void inspect_body(const Model& model, const std::string& name, const char
 
 /// Energy that is stored in the contacts of solids, J; of one body's side alone, or of all.
 inline double contact_energy(const SceneView& scene, std::int32_t body = -1) {
-  if (!scene.has_field("skin", fields::contact_energy)) return 0;
-  const auto energy = scene.scalar("skin", fields::contact_energy);
-  const auto part = scene.tag("skin", fields::part);
-  return ordered_sum(scene.size("skin"),
+  if (!scene.has_field("interface", fields::contact_energy)) return 0;
+  const auto energy = scene.scalar("interface", fields::contact_energy);
+  const auto part = scene.tag("interface", fields::part);
+  return ordered_sum(scene.size("interface"),
                      [&](Index i) { return body < 0 || part(i) == body ? energy(i) : 0.0; });
 }
 

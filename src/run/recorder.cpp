@@ -199,10 +199,10 @@ template <int Dim>
 typename Recorder<Dim>::Totals Recorder<Dim>::totals() const {
   Totals sum;
   sum.time = world_.clock.time;
-  for (const auto& [name, book] : world_.exchanged()) {
-    sum.mass_in += book.mass;
-    sum.energy_in += book.energy;
-    const Vec3 p = to_space<Dim>(book.momentum);
+  for (const auto& [name, account] : world_.exchanged()) {
+    sum.mass_in += account.mass;
+    sum.energy_in += account.energy;
+    const Vec3 p = to_space<Dim>(account.momentum);
     for (std::size_t k = 0; k < 3; ++k) sum.momentum_in[k] += p[static_cast<Index>(k)];
   }
   const ParticleSet<Dim>* water = world_.find("water");

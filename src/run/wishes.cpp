@@ -26,7 +26,7 @@ std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& 
     for (const FieldRequest& r : dynamic_cast<const Probe&>(*p).needs(model))
       if (present(r.set)) wishes.push_back({r.set, r.field->name, "probe " + p->name});
   for (const std::string& set : sets)
-    if (set != "walls" && set != "skin")
+    if (set != "walls" && set != "interface")
       for (const auto& asked = model.output.frames.fields;
            const std::string& f :
            asked.empty() ? usual_fields(set, present("water") && present("soil")) : asked)

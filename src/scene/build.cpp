@@ -13,9 +13,9 @@
 #include "geometry/relax_fill.h"
 #include "materials/water.h"
 #include "relax/pore_water.h"
+#include "scene/interface.h"
 #include "scene/join_walls.h"
 #include "scene/parameters.h"
-#include "scene/skin.h"
 #include "scene/soil.h"
 #include "scene/solid.h"
 #include "scene/wall_corners.h"
@@ -316,7 +316,7 @@ Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling) 
   parameters->soil = compile_soil(model, add_soil(scene, model, filling, found));
   add_solids(scene, model, filling, found);
   add_walls(scene, model, filling, found);
-  add_skin(scene, model, filling);
+  add_interface(scene, model, filling);
   if (filling != Filling::none) set_domain(*scene.world, model);
   return scene;
 }

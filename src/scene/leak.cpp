@@ -39,7 +39,7 @@ template <int Dim>
 Parts parts_of(const Scene<Dim>& scene, const Model& model, int up, bool up_is_high) {
   Parts parts;
   for (const auto& s : scene.world->sets()) {
-    if ((s->phase() != "wall" && s->phase() != "solid") || s->name() == "skin")
+    if ((s->phase() != "wall" && s->phase() != "solid") || s->name() == "interface")
       continue;  // interface particles lie on their solids
     const auto& x = s->vector(fields::position);
     const auto& part = s->tag(fields::part);

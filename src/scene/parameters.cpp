@@ -185,7 +185,7 @@ Parameters compile_parameters(const Model& model) {
   p.gravity = model.gravity;
   if (model.body_force) {
     p.body_force = &*model.body_force;
-    p.body_force_place = place_text(model, "body_force");
+    p.body_force_location = place_text(model, "body_force");
   }
   p.numerics = compile_numerics(model.numerics);
   p.water = compile_water(model);

@@ -6,7 +6,7 @@
 #include "materials/solid.h"
 #include "relax/pore_water.h"
 #include "scene/build.h"
-#include "scene/skin.h"
+#include "scene/interface.h"
 
 namespace sphgeo {
 namespace {
@@ -32,12 +32,12 @@ ParticleCounts expected_particles(const Model& model) {
           shares[k] *
               estimate_fill(*b.shape, b.spacing.value_or(model.resolution), model.dimension, {}));
   }
-  if (has_skin(model))
+  if (has_interface(model))
     for (const Body& b : model.bodies)
       if (solid_of(model, b) && b.shape)
-        add(counts, "skin",
+        add(counts, "interface",
             estimate_layers(*b.shape, b.spacing.value_or(model.resolution), model.dimension,
-                            skin_depth(model), LayerSide::inside));
+                            interface_depth(model), LayerSide::inside));
   const Placement placement{model.resolution, support_radius(model), model.dimension};
   for (const auto& b : model.boundaries)
     if (const auto* wall = dynamic_cast<const WallBoundary*>(b.get()))

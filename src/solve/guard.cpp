@@ -201,8 +201,8 @@ void Guard<Dim>::count_penetrations() {
     if (key.second != "walls" || key.first == "walls") continue;
     const ParticleSet<Dim>& set = world_.set(key.first);
     const auto& x = set.vector(fields::position);
-    const bool skin = key.first == "skin";
-    if (skin) skin_.update(world_);
+    const bool interface = key.first == "interface";
+    if (interface) interface_.update(world_);
     const double near = walls->spacing() * walls->spacing();
     const auto blocks = list.blocks();
     std::vector<Index> inside(blocks.size(), 0);
@@ -210,7 +210,7 @@ void Guard<Dim>::count_penetrations() {
       const auto& block = blocks[static_cast<std::size_t>(b)];
       for (std::size_t k = 0; k < block.size(); ++k) {
         const Index i = block.targets[k];
-        if (skin && skin_.at(i).of->clamp[skin_.at(i).i] >= 0) continue;
+        if (interface && interface_.at(i).of->clamp[interface_.at(i).i] >= 0) continue;
         double nearest = near;
         bool behind = false;
         for (std::uint32_t e = 0; e < block.count[k]; ++e) {
@@ -254,10 +254,11 @@ std::string Guard<Dim>::suspect(const ParticleSet<Dim>& set, Index i,
   const std::vector<Origin>& origins = wall ? parameters.boundaries : parameters.bodies;
   std::string out = part < origins.size()
                         ? fmt::format("; it belongs to {} '{}' ({})", wall ? "boundary" : "body",
-                                      origins[part].name, origins[part].place)
+                                      origins[part].name, origins[part].location)
                         : "; it has entered through a boundary";
-  if (parameters.body_force && !world_.pull(set.vector(fields::position)[i]).allFinite()) {
-    out += "; body_force is not finite there (" + parameters.body_force_place + ")";
+  if (parameters.body_force &&
+      !world_.body_acceleration(set.vector(fields::position)[i]).allFinite()) {
+    out += "; body_force is not finite there (" + parameters.body_force_location + ")";
   } else if (!look_for.empty()) {
     out += "; likely: " + look_for;
   } else if (world_.clock.advection_steps < 3) {

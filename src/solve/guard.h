@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "effects/skin.h"
+#include "effects/interface.h"
 #include "plan/plan.h"
 
 namespace sphgeo {
@@ -56,7 +56,7 @@ class Guard {
   const World<Dim>& world_;
   const Plan<Dim>& plan_;
   std::vector<FieldBound> bounds_;
-  SkinMap<Dim> skin_;
+  InterfaceMap<Dim> interface_;
   std::map<std::string, Index> initial_;   ///< particles at the start, by set
   std::map<std::string, Index> in_walls_;  ///< at the latest count, by set
   double largest_dt_ = 0;

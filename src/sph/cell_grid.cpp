@@ -28,7 +28,7 @@ struct IntBox {
   std::int32_t lo[3], hi[3];
 };
 
-// A particle and what places it.
+// A particle and its sorting key.
 struct SortEntry {
   std::int64_t cell;
   Id id;
@@ -72,7 +72,7 @@ void sort_in_pieces(std::vector<SortEntry>& entries) {
 }
 
 // Adds n to a counter and returns what it was.
-std::uint32_t take_places(std::uint32_t& counter, std::uint32_t n, bool alone) {
+std::uint32_t take_slots(std::uint32_t& counter, std::uint32_t n, bool alone) {
   if (!alone) return std::atomic_ref(counter).fetch_add(n, std::memory_order_relaxed);
   const std::uint32_t before = counter;
   counter += n;
@@ -178,12 +178,12 @@ void CellGrid<Dim>::fill_buckets() {
                   [&](Index begin, Index end, Index) {
                     std::fill(start_.begin() + begin, start_.begin() + end, 0);
                   });
-  // Until coordinates by place are known, their array holds the bucket of each particle. Particles
+  // Until coordinates by slot are known, their array holds the bucket of each particle. Particles
   // are taken in runs of one bucket, as most neighbors in memory are neighbors in the last order.
   std::int32_t* bucket_of = coordinate_[0].data();
   const auto take = [&](std::int32_t bucket, std::uint32_t ahead, Index run) {
-    return take_places(start_[static_cast<std::uint32_t>(bucket) + ahead],
-                       static_cast<std::uint32_t>(run), alone);
+    return take_slots(start_[static_cast<std::uint32_t>(bucket) + ahead],
+                      static_cast<std::uint32_t>(run), alone);
   };
   // Counted two further on: summed up, the entry after a bucket's own is its begin, which moves to
   // its end as the bucket fills; so at last each bucket's own entry is its begin.
@@ -268,7 +268,7 @@ void CellGrid<Dim>::sort_buckets(std::span<const Id> ids) {
 }
 
 template <int Dim>
-std::size_t CellGrid<Dim>::search_place(std::int64_t cell_key) const {
+std::size_t CellGrid<Dim>::search_slot(std::int64_t cell_key) const {
   const auto bucket = static_cast<std::size_t>(cell_key >> shift_);
   std::size_t begin = start_[bucket], end = start_[bucket + 1];
   while (begin < end) {

@@ -60,7 +60,7 @@ class CellGrid {
 
   // ---- for neighbor lists ----
 
-  /// Calls f(begin, end) for ranges of places (see place_*) that hold all particles nearer than
+  /// Calls f(begin, end) for ranges of slots (see slot_*) that hold all particles nearer than
   /// `reach` to the box from lo to hi, all in quanta; in cell order. A range is a row of cells, cut
   /// where no point of the box can reach.
   template <class F>
@@ -79,17 +79,18 @@ class CellGrid {
         if (half2 < 0.0) continue;
         const double half = std::sqrt(half2) + 1.0;
         const std::int64_t row = (c2 * count_[1] + c1) * count_[0];
-        const std::size_t begin = first_place(row + cell(lo[0] - half, 0));
-        const std::size_t end = first_place(row + cell(hi[0] + half, 0) + 1);
+        const std::size_t begin = first_slot(row + cell(lo[0] - half, 0));
+        const std::size_t end = first_slot(row + cell(hi[0] + half, 0) + 1);
         if (begin < end) f(begin, end);
       }
     }
   }
 
-  /// Coordinate d of the particles by place, in quanta; readable for 16 places past the end.
-  const std::int32_t* place_coordinate(int d) const { return coordinate_[d].data(); }
-  /// Particle by place; readable for 16 places past the end.
-  const std::uint32_t* place_particle() const { return order_.data(); }
+  /// Coordinate d of the particles by slot of the sorted order, in quanta; readable for 16 slots
+  /// past the end.
+  const std::int32_t* slot_coordinate(int d) const { return coordinate_[d].data(); }
+  /// Particle by slot; readable for 16 slots past the end.
+  const std::uint32_t* slot_particle() const { return order_.data(); }
 
  private:
   // Number of a cell along one axis, counted from the first that the set occupies. Monotone in x,
@@ -107,9 +108,9 @@ class CellGrid {
     return k;
   }
 
-  // Place of the first particle in this cell or in a later one.
-  std::size_t first_place(std::int64_t cell_key) const {
-    return shift_ == 0 ? start_[static_cast<std::size_t>(cell_key)] : search_place(cell_key);
+  // Slot of the first particle in this cell or in a later one.
+  std::size_t first_slot(std::int64_t cell_key) const {
+    return shift_ == 0 ? start_[static_cast<std::size_t>(cell_key)] : search_slot(cell_key);
   }
 
   // Squared distance along axis d from a box to cell c; 0 where they overlap, a little less than
@@ -123,16 +124,16 @@ class CellGrid {
   void choose_cells(const std::int32_t* lo, const std::int32_t* hi, double reach);
   void fill_buckets();
   void sort_buckets(std::span<const Id> ids);
-  std::size_t search_place(std::int64_t cell_key) const;
+  std::size_t search_slot(std::int64_t cell_key) const;
 
   FixedPoint<Dim> frame_;
   std::size_t size_ = 0;
   double edge_[3] = {1, 1, 1};         // edge of a cell, in quanta
   double per_edge_[3] = {1, 1, 1};     // 1 / edge
   double first_[3] = {0, 0, 0};        // the cells that the set occupies, along each axis
-  double last_[3] = {0, 0, 0};         // counted from the lowest place of the frame
+  double last_[3] = {0, 0, 0};         // counted from the lowest point of the frame
   std::int64_t count_[3] = {1, 1, 1};  // last - first + 1
-  // The table of the first place of each bucket, which is 2^shift cells in a row; and the end,
+  // The table of the first slot of each bucket, which is 2^shift cells in a row; and the end,
   // twice.
   int shift_ = 0;
   AlignedVector<std::uint32_t> start_;

@@ -6,9 +6,9 @@
 //     Kernel<Dim> kernel;
 //     template <class T> struct Sums { LaneVec<Dim, T> force{}; };
 //     template <class T>
-//     void operator()(Sums<T>& sum, const Record<Dim, T>& i, const Record<Dim, T>& j,
+//     void operator()(Sums<T>& sum, const Record<T, Water>& i, const Record<T, Water>& j,
 //                     const LaneVec<Dim, T>& r, const T& r2) const {
-//       sum.force -= (i[p] + j[p]) * j[V] * kernel.dw_over_r(r2) * r;
+//       sum.force -= (i[Water::p] + j[Water::p]) * j[Water::V] * kernel.dw_over_r(r2) * r;
 //     }
 //   };
 //   gather<Pressure::Sums>(list, records, records, Pressure{kernel},
@@ -31,8 +31,8 @@ namespace sphgeo {
 namespace detail {
 
 // r_i - r_j of two records, in metres.
-template <int Dim, class T, int N, int M, class F>
-LaneVec<Dim, T> separation(const Record<Dim, T, N>& i, const Record<Dim, T, M>& j, F quantum) {
+template <int Dim, class T, class F>
+LaneVec<Dim, T> separation(const T* i, const T* j, F quantum) {
   LaneVec<Dim, T> r;
   for (int d = 0; d < Dim; ++d) {
     if constexpr (std::is_same_v<typename ScalarOf<T>::type, float>) {
@@ -47,10 +47,10 @@ LaneVec<Dim, T> separation(const Record<Dim, T, N>& i, const Record<Dim, T, M>& 
 }
 
 // One particle in all lanes.
-template <class L, int Dim, class T, int N>
-Record<Dim, L, N> spread(const RecordView<Dim, T, N>& records, Index i) {
-  Record<Dim, L, N> record;
-  for (int n = 0; n < N; ++n)
+template <class L, class T, class... R>
+Record<L, R...> spread(const RecordView<T, R...>& records, Index i) {
+  Record<L, R...> record;
+  for (int n = 0; n < records.parts; ++n)
     for (int k = 0; k < record_size; ++k)
       record.slot[n * record_size + k] = L((*records.part[n])[i][k]);
   return record;
@@ -73,20 +73,21 @@ Sums<double> reduce(const Sums<L>& lanes) {
 
 // Throws Error (internal) if records are not those of the list's sets: the null record of the list
 // must be that of the sources.
-template <int Dim, class T, int N, int M>
-void check_records(const NeighborList& list, const RecordView<Dim, T, N>& targets,
-                   const RecordView<Dim, T, M>& sources) {
+template <class T, class... R, class... Q>
+void check_records(const NeighborList& list, const RecordView<T, R...>& targets,
+                   const RecordView<T, Q...>& sources) {
   if (targets.size() != list.target_count() || sources.size() != list.source_count() ||
       !(targets.frame() == sources.frame()))
     throw Error(ExitCode::internal, "a pass over pairs met records of another set");
 }
 
 // gather for one block of a list, in the calling thread.
-template <template <class> class Sums, int Dim, class T, int N, int M, class Pair, class Finish>
-void walk_block(const NeighborList::Block& block, const RecordView<Dim, T, N>& targets,
-                const RecordView<Dim, T, M>& sources, const Pair& pair_function,
+template <template <class> class Sums, class T, class... R, class... Q, class Pair, class Finish>
+void walk_block(const NeighborList::Block& block, const RecordView<T, R...>& targets,
+                const RecordView<T, Q...>& sources, const Pair& pair_function,
                 const Finish& finish) {
   using L = Lanes<T>;
+  constexpr int Dim = RecordView<T, R...>::dim, M = sizeof...(Q);
   // Copies: the compiler keeps them in registers, as nothing in the loop can write them.
   const Pair pair = pair_function;
   const T quantum = static_cast<T>(sources.frame().quantum);
@@ -95,7 +96,7 @@ void walk_block(const NeighborList::Block& block, const RecordView<Dim, T, N>& t
 
   for (std::size_t k = 0; k < block.size(); ++k) {
     const auto i = static_cast<Index>(block.targets[k]);
-    const Record<Dim, L, N> record_i = detail::spread<L>(targets, i);
+    const Record<L, R...> record_i = detail::spread<L>(targets, i);
     Sums<L> sums{};
     // The last lanes may meet the null record; the list is long enough for any width.
     const std::uint32_t* e = block.entries.data() + block.begin[k];
@@ -103,10 +104,10 @@ void walk_block(const NeighborList::Block& block, const RecordView<Dim, T, N>& t
     for (; e < end; e += L::width) {
       // The list is a stream of its own beside the records.
       __builtin_prefetch(e + 1024);
-      Record<Dim, L, M> record_j;
+      Record<L, Q...> record_j;
       for (int m = 0; m < M; ++m)
         load_records(base[static_cast<std::size_t>(m)], e, record_j.slot + m * record_size);
-      const LaneVec<Dim, L> r = detail::separation(record_i, record_j, quantum);
+      const LaneVec<Dim, L> r = detail::separation<Dim>(record_i.slot, record_j.slot, quantum);
       pair(sums, record_i, record_j, r, dot(r, r));
     }
     finish(i, detail::reduce<Sums>(sums));
@@ -116,10 +117,10 @@ void walk_block(const NeighborList::Block& block, const RecordView<Dim, T, N>& t
 }  // namespace detail
 
 /// Calls finish(i, sums) for every walked target i of the list, with sums (in double) of
-/// pair(sums, i, j, r, r2) over its neighbors. `targets` and `sources` are Records, or two of them
-/// joined by with(); both sides have the frame of the list's grid. Sums are taken in the precision
-/// of the records. finish runs in parallel and may write what belongs to i only. Throws Error
-/// (internal) if the records are not those of the list's sets.
+/// pair(sums, i, j, r, r2) over its neighbors. `targets` and `sources` are RecordSources, or
+/// several of one set joined by with(); both sides have the frame of the list's grid. Sums are
+/// taken in the precision of the records. finish runs in parallel and may write what belongs to i
+/// only. Throws Error (internal) if the records are not those of the list's sets.
 template <template <class> class Sums, class Targets, class Sources, class Pair, class Finish>
 void gather(const NeighborList& list, const Targets& target_records, const Sources& source_records,
             const Pair& pair_function, const Finish& finish) {
@@ -158,7 +159,7 @@ void brute_force(const Targets& target_records, const Sources& source_records, d
     for (Index j = 0; j < sources.size(); ++j) {
       if (pairing == Pairing::within && i == j) continue;
       const auto record_j = detail::spread<double>(sources, j);
-      const auto r = detail::separation(record_i, record_j, 1.0);
+      const auto r = detail::separation<targets.dim>(record_i.slot, record_j.slot, 1.0);
       const double r2 = dot(r, r);
       if (r2 < radius * radius) pair(sums, record_i, record_j, r, r2);
     }

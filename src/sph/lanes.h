@@ -1,5 +1,5 @@
 #pragma once
-// Short vectors of numbers for the pair loops: the only header that knows the instruction set.
+// Short vectors of numbers for the pair loops: the only header with code for an instruction set.
 //
 // A pair function is written once as a template on its number type and instantiated with `Lanes`
 // (one neighbor per lane) and with plain `double` (brute force). All operations here exist for

@@ -57,11 +57,11 @@ struct Candidates {
       for (std::size_t k = begin; k < end; k += width) {
         const std::size_t to = size + (k - begin);
         for (int d = 0; d < Dim; ++d) {
-          const IntLanes at = load_ints(sources.place_coordinate(d) + k) >> scale.shift;
+          const IntLanes at = load_ints(sources.slot_coordinate(d) + k) >> scale.shift;
           const FloatLanes from_corner = to_float(at - corner[d]);
           std::memcpy(x[d].data() + to, &from_corner, sizeof from_corner);
         }
-        const IntLanes particle = load_ints(sources.place_particle() + k) << 3;
+        const IntLanes particle = load_ints(sources.slot_particle() + k) << 3;
         std::memcpy(offset.data() + to, &particle, sizeof particle);
       }
       size += end - begin;

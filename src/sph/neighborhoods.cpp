@@ -98,7 +98,7 @@ std::vector<Vec<Dim>> Neighborhoods<Dim>::arranged_positions(const std::string& 
   std::vector<Vec<Dim>> at(static_cast<std::size_t>(grid.size()));
   parallel_for(grid.size(), [&](Index i) {
     std::int32_t fixed[Dim];
-    for (int d = 0; d < Dim; ++d) fixed[d] = grid.place_coordinate(d)[i];
+    for (int d = 0; d < Dim; ++d) fixed[d] = grid.slot_coordinate(d)[i];
     at[static_cast<std::size_t>(i)] = frame_.place_of(fixed);
   });
   return at;
@@ -108,7 +108,7 @@ template <int Dim>
 void Neighborhoods<Dim>::save_positions(StateSink& sink, const std::string& set) const {
   const CellGrid<Dim>& grid = grids_.at(set);
   for (int d = 0; d < Dim; ++d)
-    sink.put(path_of(set, d), std::span<const std::int32_t>(grid.place_coordinate(d),
+    sink.put(path_of(set, d), std::span<const std::int32_t>(grid.slot_coordinate(d),
                                                             static_cast<std::size_t>(grid.size())));
 }
 

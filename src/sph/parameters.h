@@ -18,7 +18,7 @@ class Expression;
 struct Motion;
 struct Shape;
 
-/// Three formulas of place and time.
+/// Three formulas of position and time.
 using VectorFormula = std::array<Expression, 3>;
 
 /// Arithmetic of pair sums.
@@ -161,17 +161,17 @@ struct SolidParameters {
 struct BoundaryMotion {
   std::string name;
   const Motion* motion = nullptr;  ///< null: it rests, or is no wall
-  bool absorbs_waves = false;      ///< its motion takes up waves that come back to it
+  bool absorbs_waves = false;      ///< active wave absorption is on
 };
 
 /// Layers of water that enter through a flat rectangle.
 struct InletParameters {
   std::string name;
-  std::vector<Vec3> layer;                  ///< places of one layer, by rows, m
+  std::vector<Vec3> layer;                  ///< positions of one layer, by rows, m
   int across = 0;                           ///< axis that the water crosses
   double direction = 1;                     ///< along it, 1 or -1
   const VectorFormula* velocity = nullptr;  ///< m/s
-  double share = 1;                         ///< of the places that get a particle
+  double share = 1;                         ///< of the positions that get a particle
   std::uint64_t seed = 0;
   double from = 0;  ///< s
   std::optional<double> until;
@@ -192,14 +192,14 @@ struct OutletParameters {
 
 /// Name of a body or boundary, and where the deck defines it, as "deck.yaml:12:5".
 struct Origin {
-  std::string name, place;
+  std::string name, location;
 };
 
 /// The whole table. Immutable once the scene is built.
 struct Parameters {
   Vec3 gravity = Vec3::Zero();                ///< m/s2
   const VectorFormula* body_force = nullptr;  ///< further acceleration, m/s2; null: none
-  std::string body_force_place;               ///< where the deck gives it
+  std::string body_force_location;            ///< where the deck gives it
   NumericsParameters numerics;
   WaterParameters water;
   SoilParameters soil;

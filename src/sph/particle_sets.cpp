@@ -58,7 +58,7 @@ void ParticleSets<Dim>::remove_lost(ParticleSet<Dim>& set, OutsideDomain policy,
   const double count = ordered_sum(set.size(), [&](Index i) { return outside(i) ? 1.0 : 0.0; });
   if (count == 0) return;
   for (const std::uint32_t i : indices_where(set.size(), outside)) {
-    const bool lost = x[i].allFinite();  // what has no place at all has not left: it is broken
+    const bool lost = x[i].allFinite();  // a position that is not finite is an error, not a loss
     if (lost && policy != OutsideDomain::stop && set.phase() != "solid") continue;
     const Vec3 at = to_space<Dim>(x[i]);
     throw UnstableError(

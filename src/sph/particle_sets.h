@@ -15,13 +15,13 @@ namespace sphgeo {
 template <int Dim>
 class ParticleSets {
  public:
-  /// Adds a set. `moves` is false for sets whose particles never change place.
+  /// Adds a set. `moves` is false for sets whose particles never move.
   ParticleSet<Dim>& add(std::string name, std::string phase, double spacing, double h, bool moves);
   /// Throws std::logic_error when there is none of that name.
   ParticleSet<Dim>& at(const std::string& name) const;
   ParticleSet<Dim>* find(const std::string& name) const;
   const std::vector<std::unique_ptr<ParticleSet<Dim>>>& all() const { return sets_; }
-  /// Whether the particles of a set change place.
+  /// Whether the particles of a set move.
   bool moves(const std::string& name) const { return moves_.at(name); }
   /// The largest support of a kernel, m.
   double reach() const;

@@ -1,5 +1,5 @@
 #pragma once
-// Wave makers that take up the waves that come back to them.
+// State of wave makers with active wave absorption.
 
 #include <map>
 #include <string>
@@ -10,7 +10,7 @@ namespace sphgeo {
 
 /// Motion of a piston beside the one that the deck prescribes, along the direction of its waves.
 struct PistonState {
-  double wanted = 0;  ///< speed that would take up what comes, m/s
+  double wanted = 0;  ///< speed that absorbs the waves that arrive, m/s
   double lag = 0;     ///< time in which it gets to that speed, s
   double speed = 0;   ///< m/s
   double shift = 0;   ///< m

@@ -28,7 +28,7 @@ World<Dim>::World(std::shared_ptr<const Parameters> parameters)
       frozen_(parameters_->numerics.pair_geometry == PairGeometry::frozen) {}
 
 template <int Dim>
-Vec<Dim> World<Dim>::pull(const Vec<Dim>& at) const {
+Vec<Dim> World<Dim>::body_acceleration(const Vec<Dim>& at) const {
   if (!parameters_->body_force) return gravity_;
   const VectorFormula& f = *parameters_->body_force;
   const Vec3 place = to_space<Dim>(at);
@@ -69,7 +69,7 @@ void World<Dim>::rearrange() {
   neighborhoods_.build_lists(sets_);
 }
 
-// Solids are sorted once; the grid is that of the places they are at.
+// Solids are sorted once; the grid is that of the positions they are at.
 template <int Dim>
 void World<Dim>::arrange_solids(ParticleSet<Dim>& set) {
   if (!neighborhoods_.has_grid(set.name())) {
@@ -79,7 +79,7 @@ void World<Dim>::arrange_solids(ParticleSet<Dim>& set) {
   neighborhoods_.place(set, sets_.reach());
 }
 
-// By the cells of the places `at`, then by id; makes room in the records.
+// By the cells of the positions `at`, then by id; makes room in the records.
 template <int Dim>
 void World<Dim>::sort(ParticleSet<Dim>& set, std::span<const Vec<Dim>> at) {
   neighborhoods_.sort(set, at, sets_.reach());
@@ -88,27 +88,21 @@ void World<Dim>::sort(ParticleSet<Dim>& set, std::span<const Vec<Dim>> at) {
 
 template <int Dim>
 void World<Dim>::resize_records(const ParticleSet<Dim>& set) {
-  for (auto& [key, record] : records_) {
-    if (key.first != set.name()) continue;
-    if (single_) record.single.resize(set.size(), neighborhoods_.frame());
-    else record.full.resize(set.size(), neighborhoods_.frame());
-  }
+  records_.resize(set.name(), set.size(), neighborhoods_.frame(), single_);
 }
 
 template <int Dim>
 void World<Dim>::pack_positions(ParticleSet<Dim>& set) {
   const auto& x = set.vector(fields::position);
   with_pair_precision([&](auto number) {
-    auto& r = records(set.name()).template get<decltype(number)>();
+    const auto r = records_.template write<Position<Dim>, decltype(number)>(set.name());
     parallel_for(set.size(), [&](Index i) { r.set_position(i, x[i]); });
   });
 }
 
 template <int Dim>
 std::size_t World<Dim>::bytes() const {
-  std::size_t sum = sets_.bytes() + neighborhoods_.bytes();
-  for (const auto& [name, r] : records_) sum += r.single.bytes() + r.full.bytes();
-  return sum;
+  return sets_.bytes() + neighborhoods_.bytes() + records_.bytes();
 }
 
 template <int Dim>
@@ -134,8 +128,7 @@ void World<Dim>::save_arrangement(StateSink& sink) const {
   for (const auto& s : sets()) {
     if (!moves(s->name()) || s->phase() == "solid") continue;
     neighborhoods_.save_positions(sink, s->name());
-    const auto records = records_.find({s->name(), 0});
-    if (records == records_.end()) continue;
+    if (!packed(s->name())) continue;
     const auto put = [&](const auto& r) {
       const auto n = static_cast<std::size_t>(s->size());
       std::vector<typename std::decay_t<decltype(r)>::Stored> stored(n);
@@ -146,8 +139,8 @@ void World<Dim>::save_arrangement(StateSink& sink) const {
         sink.put(packed_path(s->name(), d), stored);
       }
     };
-    if (single_) put(records->second.single);
-    else put(records->second.full);
+    if (single_) put(records_.template array<float>(s->name(), 0));
+    else put(records_.template array<double>(s->name(), 0));
   }
 }
 
@@ -164,7 +157,7 @@ void World<Dim>::load_arrangement(const StateSource& source) {
       if (packed(s->name())) pack_positions(*s);
       continue;
     }
-    // They are sorted: nobody changes place.
+    // They are sorted: the order stays.
     sort(*s, neighborhoods_.load_positions(source, s->name(), s->size()));
     if (packed(s->name())) load_packed(source, s->name());
   }
@@ -183,9 +176,8 @@ void World<Dim>::load_packed(const StateSource& source, const std::string& set) 
       });
     }
   };
-  RecordPair<Dim>& records = records_.at({set, 0});
-  if (single_) get(records.single);
-  else get(records.full);
+  if (single_) get(records_.template array<float>(set, 0));
+  else get(records_.template array<double>(set, 0));
 }
 
 template class World<2>;

@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -16,22 +15,9 @@
 #include "sph/neighborhoods.h"
 #include "sph/particle_sets.h"
 #include "sph/pistons.h"
-#include "sph/records.h"
+#include "sph/record_store.h"
 
 namespace sphgeo {
-
-/// Packed records of one set in the precision of the pair sums; the other one stays empty.
-template <int Dim>
-struct RecordPair {
-  Records<Dim, float> single;
-  Records<Dim, double> full;
-
-  template <class T>
-  Records<Dim, T>& get() {
-    if constexpr (std::is_same_v<T, float>) return single;
-    else return full;
-  }
-};
 
 template <int Dim>
 class World {
@@ -43,23 +29,23 @@ class World {
   /// What the deck says to the effects; complete when the scene is built.
   const Parameters& parameters() const { return *parameters_; }
   const Vec<Dim>& gravity() const { return gravity_; }  ///< m/s2
-  /// Gravity and the deck's body force at a place, now, m/s2.
-  Vec<Dim> pull(const Vec<Dim>& at) const;
+  /// Gravity and the deck's body force at a position, now, m/s2.
+  Vec<Dim> body_acceleration(const Vec<Dim>& at) const;
   Clock clock;
 
-  /// Adds a set. `moves` is false for sets whose particles never change place.
+  /// Adds a set. `moves` is false for sets whose particles never move.
   ParticleSet<Dim>& add_set(std::string name, std::string phase, double spacing, double h,
                             bool moves) {
     return sets_.add(std::move(name), std::move(phase), spacing, h, moves);
   }
   /// Adds a set of solids: it moves, but keeps its particles, their order and their neighbors at
-  /// rest. No list but the reference list pairs them: what touches them is the set "skin".
+  /// rest. No list but the reference list pairs them: what touches them is the set "interface".
   ParticleSet<Dim>& add_solids(std::string name, double spacing, double h);
   /// Throws std::logic_error when there is none of that name.
   ParticleSet<Dim>& set(const std::string& name) const { return sets_.at(name); }
   ParticleSet<Dim>* find(const std::string& name) const { return sets_.find(name); }
   const std::vector<std::unique_ptr<ParticleSet<Dim>>>& sets() const { return sets_.all(); }
-  /// Whether the particles of a set change place.
+  /// Whether the particles of a set move.
   bool moves(const std::string& set) const { return sets_.moves(set); }
   /// Sets the box outside of which particles are lost and fits the fixed-point frame to it.
   void set_domain(const Vec<Dim>& lo, const Vec<Dim>& hi);
@@ -81,8 +67,8 @@ class World {
     return neighborhoods_.reference_weights(set);
   }
   const CellGrid<Dim>& grid(const std::string& set) const { return neighborhoods_.grid(set); }
-  /// The places of a set at the last rearrangement, as its grid holds them.
-  std::vector<Vec<Dim>> arranged_places(const std::string& set) const {
+  /// The positions of a set at the last rearrangement, as its grid holds them.
+  std::vector<Vec<Dim>> arranged_positions(const std::string& set) const {
     return neighborhoods_.arranged_positions(set);
   }
 
@@ -95,11 +81,12 @@ class World {
   bool single_precision() const { return single_; }
   /// Whether pair sums see positions of the last rearrangement (true) or of now.
   bool frozen_geometry() const { return frozen_; }
-  /// Records number `which` of a set: kept by the effects, sized by rearrange().
-  RecordPair<Dim>& records(const std::string& set, int which = 0) { return records_[{set, which}]; }
+  /// Packed records: written by the effects, sized by rearrange().
+  RecordStore<Dim>& records() { return records_; }
+  const RecordStore<Dim>& records() const { return records_; }
 
   /// Line 28 of Algorithm 2: removes lost particles, sorts by cell, rebuilds grids and lists and
-  /// the places in the records.
+  /// the positions in the records.
   void rearrange();
   /// Number of rearrangements so far: what was kept of single particles is void when it changes.
   long arrangement() const { return arrangement_; }
@@ -108,7 +95,7 @@ class World {
   /// What has crossed a boundary; the account is made at the first call.
   Exchanged<Dim>& exchanged(const std::string& boundary) { return ledger_[boundary]; }
   const std::map<std::string, Exchanged<Dim>>& exchanged() const { return ledger_.accounts(); }
-  /// A wave maker that takes up waves; made at the first call.
+  /// State of a wave maker with active wave absorption; made at the first call.
   PistonState& piston(const std::string& boundary) { return pistons_[boundary]; }
 
   /// Memory of fields, records, grids and lists, bytes.
@@ -120,16 +107,16 @@ class World {
   void save(StateSink& sink) const;
   void load(const StateSource& source);
 
-  /// The same within an advection step, after save() and load(): the places at the last
+  /// The same within an advection step, after save() and load(): the positions at the last
   /// rearrangement, which lists and frozen pair geometry rest on. Loading rebuilds grids, lists and
-  /// places in the records from them.
+  /// positions in the records from them.
   void save_arrangement(StateSink& sink) const;
   void load_arrangement(const StateSource& source);
 
  private:
   void arrange_solids(ParticleSet<Dim>& set);
   void sort(ParticleSet<Dim>& set, std::span<const Vec<Dim>> at);
-  bool packed(const std::string& set) const { return records_.contains({set, 0}); }
+  bool packed(const std::string& set) const { return records_.holds(set, 0); }
   void resize_records(const ParticleSet<Dim>& set);
   void load_packed(const StateSource& source, const std::string& set);
 
@@ -138,7 +125,7 @@ class World {
   bool single_, frozen_;
   ParticleSets<Dim> sets_;
   Neighborhoods<Dim> neighborhoods_;
-  std::map<std::pair<std::string, int>, RecordPair<Dim>> records_;
+  RecordStore<Dim> records_;
   BoundaryLedger<Dim> ledger_;
   Pistons pistons_;
   long arrangement_ = 0;
@@ -146,5 +133,15 @@ class World {
 
 extern template class World<2>;
 extern template class World<3>;
+
+/// Records of type R of a set in precision T, to read or to pack (see RecordStore).
+template <class R, class T, int Dim>
+RecordSource<R, T> read_records(World<Dim>& world, const std::string& set) {
+  return world.records().template read<R, T>(set);
+}
+template <class R, class T, int Dim>
+RecordPacking<R, T> write_records(World<Dim>& world, const std::string& set) {
+  return world.records().template write<R, T>(set);
+}
 
 }  // namespace sphgeo

@@ -13,28 +13,35 @@ const WaterParameters constants{rho, 30.0, 2.0, 3.0};
 const WallPair<2> pair(constants, h, dp);
 // The wall's pressure gradient: rho g over the kernel's lattice moment, see WallPair.
 const double gradient = rho * g * pair.slope;
-using Wall = Record<2, double, 2>;
-using Water = Record<2, double, 2>;
+using Wall = WallRecord<2, double>;
+using Water = Record<double, packed::WaterState<2>, packed::PressureGradient<2>>;
 using V = LaneVec<2, double>;
+
+auto state(Wall& w) { return PackedRecord<packed::Wall<2>, double>(w.slot); }
+auto surface(Wall& w) { return PackedRecord<packed::WallSurface<2>, double>(w.slot + record_size); }
+auto state(Water& w) { return PackedRecord<packed::WaterState<2>, double>(w.slot); }
+auto gradient_of(Water& w) {
+  return PackedRecord<packed::PressureGradient<2>, double>(w.slot + record_size);
+}
 
 // A particle of a floor at rest, normal up.
 Wall floor_particle() {
   Wall w{};
-  w.slot[wall_slot::volume] = volume;
-  w.slot[wall_slot::no_slip] = 1;
-  w.slot[wall_slot::normal + 1] = 1;
-  w.slot[wall_slot::push] = g;
-  w.slot[wall_slot::weight] = g;
+  state(w).put(packed::Wall<2>::volume, volume);
+  state(w).put(packed::Wall<2>::no_slip, 1);
+  surface(w).put(packed::WallSurface<2>::normal, 1, 1);
+  surface(w).put(packed::WallSurface<2>::push, g);
+  surface(w).put(packed::WallSurface<2>::weight, g);
   return w;
 }
 
-// Water at rest with pressure p; `pull` is g - dv/dt.
+// Water at rest with pressure p.
 Water still_water(double p) {
   Water w{};
-  w.slot[water_slot::volume] = volume;
-  w.slot[water_slot::pressure] = p;
-  w.slot[water_slot::pull + 1] = -g;
-  w.slot[water_slot::density] = rho;
+  state(w).put(packed::WaterState<2>::volume, volume);
+  state(w).put(packed::WaterState<2>::pressure, p);
+  gradient_of(w).put(packed::PressureGradient<2>::over_density, 1, -g);
+  gradient_of(w).put(packed::PressureGradient<2>::density, rho);
   return w;
 }
 
@@ -73,14 +80,15 @@ TEST_SUITE("effects") {
 
   TEST_CASE("at a side wall the wall's pressure is hydrostatic at rest, constant in free fall") {
     Wall side = floor_particle();
-    side.slot[wall_slot::normal] = 1;
-    side.slot[wall_slot::normal + 1] = 0;
-    side.slot[wall_slot::push] = side.slot[wall_slot::weight] = 0;
+    surface(side).put(packed::WallSurface<2>::normal, 0, 1);
+    surface(side).put(packed::WallSurface<2>::normal, 1, 0);
+    surface(side).put(packed::WallSurface<2>::push, 0);
+    surface(side).put(packed::WallSurface<2>::weight, 0);
     const V r = at(dp, dp);  // the wall particle lies lower by dp
     const V rest = pair.force(still_water(500), side, r, dot(r, r));
     CHECK(rest[0] == doctest::Approx(-(2 * 500 + gradient * dp) * slope(r) * dp * volume));
     Water falling = still_water(500);
-    falling.slot[water_slot::pull + 1] = 0;
+    gradient_of(falling).put(packed::PressureGradient<2>::over_density, 1, 0);
     const V fall = pair.force(falling, side, r, dot(r, r));
     CHECK(fall[0] == doctest::Approx(-2 * 500 * slope(r) * dp * volume));
   }
@@ -90,7 +98,7 @@ TEST_SUITE("effects") {
     const V r = at(0, dp);
     const auto force_at = [&](double speed) {
       Water w = still_water(500);
-      w.slot[water_slot::velocity + 1] = speed;
+      state(w).put(packed::WaterState<2>::velocity, 1, speed);
       const WallPair<2> inviscid({rho, 30.0, 0.0, 3.0}, h, dp);
       return inviscid.force(w, floor_particle(), r, dot(r, r))[1];
     };
@@ -105,31 +113,31 @@ TEST_SUITE("effects") {
   TEST_CASE("friction acts against the motion along the wall, and only with no slip") {
     const V r = at(0, dp);
     Water w = still_water(0);
-    w.slot[water_slot::pull + 1] = 0;
-    w.slot[water_slot::velocity] = 3;
+    gradient_of(w).put(packed::PressureGradient<2>::over_density, 1, 0);
+    state(w).put(packed::WaterState<2>::velocity, 0, 3);
     Wall wall = floor_particle();
-    wall.slot[wall_slot::push] = 0;
+    surface(wall).put(packed::WallSurface<2>::push, 0);
     const V stuck = pair.force(w, wall, r, dot(r, r));
     // Eq. 74 with v_i - v_wall^d = 2 (v_i - v_wall).
     CHECK(stuck[0] == doctest::Approx(2 * 2.0 * 2 * 3 * slope(r) * dp * dp /
                                       (dp * dp + 0.01 * h * h) * volume));
     CHECK(stuck[0] < 0);
-    wall.slot[wall_slot::no_slip] = 0;
+    state(wall).put(packed::Wall<2>::no_slip, 0);
     CHECK(pair.force(w, wall, r, dot(r, r))[0] == 0.0);
     // A wall that moves along with the water does not rub.
-    wall.slot[wall_slot::no_slip] = 1;
-    wall.slot[wall_slot::velocity] = 3;
+    state(wall).put(packed::Wall<2>::no_slip, 1);
+    state(wall).put(packed::Wall<2>::velocity, 0, 3);
     CHECK(pair.force(w, wall, r, dot(r, r))[0] == 0.0);
   }
 
   TEST_CASE(
       "a wall that moves into the water compresses it, one that leads gravity away does not "
       "dissipate") {
-    Record<2, double> water{};
+    Record<double, packed::WaterState<2>> water{};
     const V r = at(0, dp);
     Wall wall = floor_particle();
     CHECK(pair.divergence(water, wall, r, dot(r, r)) == doctest::Approx(0));
-    wall.slot[wall_slot::velocity + 1] = 1;
+    state(wall).put(packed::Wall<2>::velocity, 1, 1);
     // d rho/dt = rho * sum of 2 (v_i - v_wall) . grad W V, positive when they close.
     CHECK(pair.divergence(water, wall, r, dot(r, r)) ==
           doctest::Approx(-2 * slope(r) * dp * volume));

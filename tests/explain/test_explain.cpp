@@ -73,6 +73,12 @@ Json plan_of(const std::string& deck, const std::vector<std::string>& overrides 
     for (const auto& [name, field] : set->fields()) names.push_back(name);
     j["fields"][set->name()] = names;
   }
+  for (const RecordRow& r : record_rows(rig.plan->records()))
+    j["records"].push_back({{"set", r.set},
+                            {"name", r.record->name},
+                            {"written_by", r.written_by},
+                            {"read_by", r.read_by},
+                            {"used_up_by", r.used_up_by}});
   return j;
 }
 

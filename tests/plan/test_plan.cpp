@@ -8,6 +8,7 @@
 #include "support/rig.h"
 
 using namespace sphgeo;
+using test::FakeWorld;
 using test::Rig;
 
 namespace {
@@ -21,15 +22,6 @@ std::size_t register_fakes(std::integer_sequence<int, K...>) {
   return (0 + ... + (&registered<K> != nullptr ? 1 : 0));
 }
 const std::size_t fake_count = register_fakes(std::make_integer_sequence<int, test::fakes>());
-
-// A world with one set of two particles, named after the scenario.
-struct FakeWorld {
-  World<2> world{std::make_shared<Parameters>()};
-  explicit FakeWorld(const std::string& scenario) {
-    world.add_set(scenario, "water", 0.1, 0.13, true).resize(2);
-    world.set_domain(Vec<2>::Constant(-1), Vec<2>::Constant(1));
-  }
-};
 
 std::vector<std::string> names(const auto& plan) {
   std::vector<std::string> out;

@@ -46,7 +46,7 @@ double depth(double dx, double dz, double turn = 0) {
     }
   };
   move("solids");
-  move("skin");
+  move("interface");
   rig.plan_it();
   CHECK(*rig.sample(1)[0] == 0);
   CHECK(*rig.sample(2)[0] == doctest::Approx(*rig.sample(0)[0]).epsilon(1e-12));

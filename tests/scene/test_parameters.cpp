@@ -101,7 +101,7 @@ TEST_SUITE("scene") {
     REQUIRE(p.outlets.size() == 1);
     CHECK(p.outlets[0].name == "drain");
     CHECK(p.bodies[3].name == "plate");
-    CHECK(p.boundaries[1].place == "deck:18:5");
+    CHECK(p.boundaries[1].location == "deck:18:5");
   }
 
   TEST_CASE("soil that all rests, or is led, is told apart from soil that moves by forces") {

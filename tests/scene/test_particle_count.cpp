@@ -42,7 +42,7 @@ TEST_SUITE("scene") {
     compare<3>(read_deck_text(scene_2d, {"dimension=3"}));
   }
 
-  TEST_CASE("solids of their own spacing and their skin are counted too") {
+  TEST_CASE("solids of their own spacing and their interface are counted too") {
     std::string scene = scene_2d;
     scene.replace(scene.find("type: water}]"), 13,
                   "type: water}, {name: rock, type: rigid, density: 2500}]");

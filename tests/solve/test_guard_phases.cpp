@@ -94,7 +94,7 @@ TEST_SUITE("solve") {
         }
       }
     CHECK(planted >= 60);
-    for (const char* set : {"water", "soil", "solids", "skin"})
+    for (const char* set : {"water", "soil", "solids", "interface"})
       CHECK_MESSAGE(sets_caught.count(set) == 1, set);
   }
 
@@ -207,6 +207,6 @@ boundaries: [{name: tank, type: tank, min: [0, 0, 0], max: [1, 0.5, 1], open: [t
     rig.plan_it();
     for (int step = 0; step < 20; ++step) CHECK_FALSE(verdict(rig));
     for (const auto& [name, value] : rig.stepper->guard().extremes())
-      if (name == "in_walls_skin") CHECK(value == 0);
+      if (name == "in_walls_interface") CHECK(value == 0);
   }
 }

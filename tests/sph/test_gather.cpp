@@ -13,10 +13,22 @@ using namespace sphgeo;
 
 namespace {
 
-// A pair function with everything the real ones have; slots in the record, and one in a second.
+template <int Dim>
+struct Fluid : RecordType<Dim> {
+  static constexpr RecordField<Fluid, Dim> V{};
+  static constexpr RecordField<Fluid, Dim + 1, Dim> v{};
+  static constexpr RecordField<Fluid, 2 * Dim + 1> p{};
+  static constexpr RecordSpec spec{"fluid", 0, "", {{{"V", V}, {"v", v}, {"p", p}}}};
+};
+template <int Dim>
+struct Extra : RecordType<Dim> {
+  static constexpr RecordField<Extra, 7> factor{};
+  static constexpr RecordSpec spec{"extra", 1, "", {{{"factor", factor}}}};
+};
+
+// A pair function with everything the real ones have; fields of a record, and one of a second.
 template <int Dim>
 struct Mixed {
-  static constexpr int V = Dim, v = Dim + 1, p = 2 * Dim + 1;
   Kernel<Dim> kernel;
 
   template <class T>
@@ -24,14 +36,17 @@ struct Mixed {
     LaneVec<Dim, T> force{};
     T rate{};
   };
-  template <class T, int N>
-  void operator()(Sums<T>& sum, const Record<Dim, T, N>& i, const Record<Dim, T, N>& j,
+  template <class T, class... R>
+  void operator()(Sums<T>& sum, const Record<T, R...>& i, const Record<T, R...>& j,
                   const LaneVec<Dim, T>& r, const T& r2) const {
+    constexpr auto V = Fluid<Dim>::V;
+    constexpr auto v = Fluid<Dim>::v;
+    constexpr auto p = Fluid<Dim>::p;
     const T dW_r = kernel.dw_over_r(r2) * j[V];
     const LaneVec<Dim, T> v_ij = i.vec(v) - j.vec(v);
     const T closing = max(T(0), -dot(v_ij, r) * inverse_length(r2));
     T pressure = i[p] + j[p] + T(3) * closing;
-    if constexpr (N == 2) pressure += i[8 + 7] * j[8 + 7];
+    if constexpr (sizeof...(R) == 2) pressure += i[Extra<Dim>::factor] * j[Extra<Dim>::factor];
     sum.force += v_ij * (dW_r * r2 * reciprocal(r2 + T(0.01))) - (pressure * dW_r) * r;
     sum.rate += kernel.w(r2) * j[V] + select(closing > T(0), dW_r, -dW_r);
   }
@@ -95,6 +110,12 @@ struct Scene {
 template <int Dim>
 using SumOf = typename Mixed<Dim>::template Sums<double>;
 
+// The numbers as those of a record type.
+template <template <int> class R = Fluid, int Dim, class T>
+RecordSource<R<Dim>, T> as(const Records<Dim, T>& records) {
+  return RecordSource<R<Dim>, T>(records);
+}
+
 // Largest difference of two results relative to their largest value.
 template <int Dim>
 double difference(const std::vector<SumOf<Dim>>& a, const std::vector<SumOf<Dim>>& b) {
@@ -123,20 +144,21 @@ void check_against_brute_force(double tolerance, double where, double box) {
     const auto water = scene.template records<T>(scene.water, 1);
     const auto wall = scene.template records<T>(scene.wall, 2);
     const auto water2 = scene.template records<T>(scene.water, 3);
-    gather<Mixed<Dim>::template Sums>(scene.within, water, water, pair, into(fast));
-    gather<Mixed<Dim>::template Sums>(scene.across, water, wall, pair, into(fast_wall));
-    gather<Mixed<Dim>::template Sums>(scene.within, with(water, water2), with(water, water2), pair,
-                                      into(fast_two));
+    gather<Mixed<Dim>::template Sums>(scene.within, as(water), as(water), pair, into(fast));
+    gather<Mixed<Dim>::template Sums>(scene.across, as(water), as(wall), pair, into(fast_wall));
+    const auto both = with<T>(as(water), as<Extra>(water2));
+    gather<Mixed<Dim>::template Sums>(scene.within, both, both, pair, into(fast_two));
   }
   const auto water = scene.template records<double>(scene.water, 1);
   const auto wall = scene.template records<double>(scene.wall, 2);
   const auto water2 = scene.template records<double>(scene.water, 3);
   const double reach = 2 * scene.h;
-  brute_force<Mixed<Dim>::template Sums>(water, water, reach, Pairing::within, pair, into(slow));
-  brute_force<Mixed<Dim>::template Sums>(water, wall, reach, Pairing::across, pair,
+  brute_force<Mixed<Dim>::template Sums>(as(water), as(water), reach, Pairing::within, pair,
+                                         into(slow));
+  brute_force<Mixed<Dim>::template Sums>(as(water), as(wall), reach, Pairing::across, pair,
                                          into(slow_wall));
-  brute_force<Mixed<Dim>::template Sums>(with(water, water2), with(water, water2), reach,
-                                         Pairing::within, pair, into(slow_two));
+  const auto both = with<double>(as(water), as<Extra>(water2));
+  brute_force<Mixed<Dim>::template Sums>(both, both, reach, Pairing::within, pair, into(slow_two));
   CHECK(difference<Dim>(fast, slow) < tolerance);
   CHECK(difference<Dim>(fast_wall, slow_wall) < tolerance);
   CHECK(difference<Dim>(fast_two, slow_two) < tolerance);
@@ -151,7 +173,7 @@ std::vector<double> all_results(const Scene<3>& scene) {
                         std::size_t at) {
     using T = decltype(number);
     const auto a = scene.records<T>(scene.water, 1), b = scene.records<T>(sources, 2);
-    gather<Mixed<3>::Sums>(list, a, b, pair, [&](Index i, const SumOf<3>& s) {
+    gather<Mixed<3>::Sums>(list, as(a), as(b), pair, [&](Index i, const SumOf<3>& s) {
       std::memcpy(&out[static_cast<std::size_t>(i) * 12 + at], &s, 4 * sizeof(double));
     });
   };
@@ -191,7 +213,7 @@ TEST_SUITE("sph") {
       a.set_position(i, r[static_cast<std::size_t>(i)]);
       for (int k = 3; k < 8; ++k) a[i][k] = 1.0f;
     }
-    gather<Mixed<3>::Sums>(list, a, a, Mixed<3>{Kernel<3>(0.1)}, [&](Index, const auto& s) {
+    gather<Mixed<3>::Sums>(list, as(a), as(a), Mixed<3>{Kernel<3>(0.1)}, [&](Index, const auto& s) {
       for (int d = 0; d < 3; ++d) CHECK(s.force[d] == 0.0);
       CHECK(std::isfinite(s.rate));
     });
@@ -205,12 +227,12 @@ TEST_SUITE("sph") {
     double size = 0;
     const Mixed<3> pair{Kernel<3>(scene.h)};
     set_threads(1);
-    gather<Mixed<3>::Sums>(scene.within, a, a, pair, [&](Index, const SumOf<3>& s) {
+    gather<Mixed<3>::Sums>(scene.within, as(a), as(a), pair, [&](Index, const SumOf<3>& s) {
       const Vec3 f(s.force[0], s.force[1], s.force[2]);
       total += f;
       size += f.norm();
     });
-    gather<Mixed<3>::Sums>(scene.within, b, b, pair, [&](Index, const SumOf<3>& s) {
+    gather<Mixed<3>::Sums>(scene.within, as(b), as(b), pair, [&](Index, const SumOf<3>& s) {
       total_float += Vec3(s.force[0], s.force[1], s.force[2]);
     });
     CHECK(size > 1.0);
@@ -237,7 +259,8 @@ TEST_SUITE("sph") {
     const auto wall = scene.records<float>(scene.wall, 2);
     const Mixed<2> pair{Kernel<2>(scene.h)};
     CHECK_THROWS_AS(
-        gather<Mixed<2>::Sums>(scene.within, water, wall, pair, [](Index, const auto&) {}), Error);
+        gather<Mixed<2>::Sums>(scene.within, as(water), as(wall), pair, [](Index, const auto&) {}),
+        Error);
   }
 
   TEST_CASE("finish runs for lonely targets of a set, not for those of a cross list") {
@@ -246,9 +269,9 @@ TEST_SUITE("sph") {
     const auto water = scene.records<float>(scene.water, 1);
     const auto wall = scene.records<float>(scene.wall, 2);
     const Mixed<2> pair{Kernel<2>(scene.h)};
-    gather<Mixed<2>::Sums>(scene.within, water, water, pair,
+    gather<Mixed<2>::Sums>(scene.within, as(water), as(water), pair,
                            [&](Index i, const auto&) { ++within[static_cast<std::size_t>(i)]; });
-    gather<Mixed<2>::Sums>(scene.across, water, wall, pair,
+    gather<Mixed<2>::Sums>(scene.across, as(water), as(wall), pair,
                            [&](Index i, const auto&) { ++across[static_cast<std::size_t>(i)]; });
     CHECK(std::count(within.begin(), within.end(), 1) == static_cast<long>(within.size()));
     CHECK(std::count(across.begin(), across.end(), 1) == scene.across.active());

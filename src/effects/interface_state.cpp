@@ -1,6 +1,6 @@
 #include "core/parallel.h"
-#include "effects/skin.h"
-#include "effects/wall_records.h"
+#include "effects/interface.h"
+#include "effects/pack_walls.h"
 
 namespace sphgeo {
 namespace {
@@ -9,20 +9,20 @@ namespace {
 /// (line 12 of Algorithm 2; Eq. 71 gives their direction at rest, here taken from the shape), and
 /// what wall pairs need.
 template <int Dim>
-class SkinState final : public Effect<Dim> {
+class InterfaceState final : public Effect<Dim> {
  public:
   static EffectInfo info() {
-    return {"skin_state", Stage::reinitialize, "Algorithm 2 line 12, Eq. 71",
+    return {"interface_state", Stage::reinitialize, "Algorithm 2 line 12, Eq. 71",
             "normals of solids as they are deformed now, for water and soil", false};
   }
   static Binding<Dim> bind(const World<Dim>& world) {
-    if (!world.find("skin")) return {"no solid can meet anything"};
+    if (!world.find("interface")) return {"no solid can meet anything"};
     if (!world.find("water") && !world.find("soil"))
       return {"there is no water and no soil around the solids"};
-    return {std::make_unique<SkinState>(world), "there are solids in water or soil"};
+    return {std::make_unique<InterfaceState>(world), "there are solids in water or soil"};
   }
 
-  explicit SkinState(const World<Dim>& world) {
+  explicit InterfaceState(const World<Dim>& world) {
     const SolidParameters& parts = world.parameters().solids;
     for (const std::string& set : solid_sets(world)) {
       solids_.push_back(set);
@@ -34,40 +34,42 @@ class SkinState final : public Effect<Dim> {
     }
   }
 
-  std::string acts_on() const override { return "skin"; }
+  std::string acts_on() const override { return "interface"; }
   Needs needs() const override {
-    Needs n{{{"skin", &fields::volume, Access::write}, {"skin", &fields::normal, Access::update}},
+    Needs n{{{"interface", &fields::volume, Access::write},
+             {"interface", &fields::normal, Access::update}},
             {}};
     for (std::size_t k = 0; k < solids_.size(); ++k)
       if (elastic_[k]) {
         n.fields.push_back({solids_[k], &fields::reference_correction, Access::read});
         n.reference_lists.push_back(solids_[k]);
+        need_deformation<Dim>(n, solids_[k]);
       }
+    need_wall_packing<Dim>(n, "interface", Access::write);
     return n;
-  }
-  void prepare(World<Dim>& world) override {
-    world.records("skin", 0);
-    world.records("skin", 1);
   }
 
   void apply(World<Dim>& world) override {
     map_.update(world);
-    ParticleSet<Dim>& skin = world.set("skin");
+    ParticleSet<Dim>& interface = world.set("interface");
     rows_.resize(solids_.size());
     for (std::size_t k = 0; k < solids_.size(); ++k)
       rows_[k].assign(static_cast<std::size_t>(world.set(solids_[k]).size()), -1);
-    const auto& number = skin.tag(fields::source_set);
-    parallel_for(skin.size(), [&](Index s) {
+    const auto& number = interface.tag(fields::source_set);
+    parallel_for(interface.size(), [&](Index s) {
       rows_[static_cast<std::size_t>(number[s])][static_cast<std::size_t>(map_.at(s).i)] =
           static_cast<std::int32_t>(s);
     });
     for (std::size_t k = 0; k < solids_.size(); ++k) turn_normals(world, k);
-    auto& volume = skin.scalar(fields::volume);
-    const auto& at_rest = skin.scalar(fields::reference_volume);
-    parallel_for(skin.size(), [&](Index s) { volume[s] = at_rest[s]; });
     restore(world);
   }
-  void restore(World<Dim>& world) override { pack_walls(world, "skin"); }
+  void restore(World<Dim>& world) override {
+    ParticleSet<Dim>& interface = world.set("interface");
+    auto& volume = interface.scalar(fields::volume);
+    const auto& at_rest = interface.scalar(fields::reference_volume);
+    parallel_for(interface.size(), [&](Index s) { volume[s] = at_rest[s]; });
+    pack_walls(world, "interface");
+  }
   std::size_t bytes() const override {
     std::size_t sum = map_.bytes();
     for (const auto& rows : rows_) sum += rows.capacity() * sizeof(std::int32_t);
@@ -83,9 +85,9 @@ class SkinState final : public Effect<Dim> {
     const auto& part = set.tag(fields::part);
     const SolidParameters& parts = world.parameters().solids;
     deformation.find_frames(world);
-    ParticleSet<Dim>& skin = world.set("skin");
-    auto& normal = skin.vector(fields::normal);
-    const auto& at_rest = skin.vector(fields::reference_normal);
+    ParticleSet<Dim>& interface = world.set("interface");
+    auto& normal = interface.vector(fields::normal);
+    const auto& at_rest = interface.vector(fields::reference_normal);
     const auto turn = [&](Index i, const Mat<Dim>& g) {
       const std::int32_t s = rows_[k][static_cast<std::size_t>(i)];
       if (s < 0) return;
@@ -96,7 +98,7 @@ class SkinState final : public Effect<Dim> {
     if (elastic_[k]) {
       world.with_pair_precision([&](auto number) {
         using T = decltype(number);
-        auto& records = world.records(solids_[k], 0).template get<T>();
+        const auto records = write_records<packed::Displacement<Dim>, T>(world, solids_[k]);
         parallel_for(set.size(),
                      [&](Index i) { deformation.pack(records, i, x[i], reference[i], part[i]); });
       });
@@ -112,11 +114,11 @@ class SkinState final : public Effect<Dim> {
   std::vector<bool> elastic_;
   std::vector<Deformation<Dim>> deformations_;
   std::vector<std::vector<std::int32_t>>
-      rows_;  // by set and particle: its row in the skin, -1 inside of the body
-  SkinMap<Dim> map_;
+      rows_;  // by set and particle: its row in the interface, -1 inside of the body
+  InterfaceMap<Dim> map_;
 };
 
-const RegisterEffect<SkinState> registered_skin_state;
+const RegisterEffect<InterfaceState> registered_interface_state;
 
 }  // namespace
 }  // namespace sphgeo

@@ -184,7 +184,7 @@ numerics: {pair_precision: double}
     rig.world.clock.dt_solid = 0;
     rig.plan->run(Stage::solid_predict);
     rig.plan->run(Stage::solid_force);
-    const auto& f = rig.world.set("skin").vector(fields::contact_force);
+    const auto& f = rig.world.set("interface").vector(fields::contact_force);
     for (Index i = 0; i < f.size(); ++i) CHECK(f[i].norm() < 1e-30);
     double most = 0;
     int steps = 0;

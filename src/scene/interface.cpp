@@ -1,4 +1,4 @@
-#include "scene/skin.h"
+#include "scene/interface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "materials/solid.h"
 
 namespace sphgeo {
-bool has_skin(const Model& model) {
+bool has_interface(const Model& model) {
   const auto solids = std::count_if(model.bodies.begin(), model.bodies.end(),
                                     [&](const Body& b) { return solid_of(model, b) != nullptr; });
   const bool folds = std::any_of(model.bodies.begin(), model.bodies.end(),
@@ -17,7 +17,7 @@ bool has_skin(const Model& model) {
          (solids < std::ssize(model.bodies) || solids > 1 || folds || !model.boundaries.empty());
 }
 
-double skin_depth(const Model& model) {
+double interface_depth(const Model& model) {
   double depth = support_radius(model);
   for (const double spacing : solid_spacings(model))
     depth = std::max(depth, 2 * model.numerics.h_factor_solid.value_or(1.15) * spacing);
@@ -37,7 +37,7 @@ std::vector<std::shared_ptr<const Shape>> wall_solids(const Model& model, int di
 }
 
 template <int Dim>
-void follow(ParticleSet<Dim>& skin, const ParticleSet<Dim>& solids, std::int32_t number,
+void follow(ParticleSet<Dim>& interface, const ParticleSet<Dim>& solids, std::int32_t number,
             const Model& model, double depth) {
   const auto walls = wall_solids(model, Dim);
   std::vector<Index> near;
@@ -53,25 +53,25 @@ void follow(ParticleSet<Dim>& skin, const ParticleSet<Dim>& solids, std::int32_t
                         });
     if (!walled) near.push_back(i);
   }
-  const Index first = skin.size();
-  skin.resize(first + static_cast<Index>(near.size()));
+  const Index first = interface.size();
+  interface.resize(first + static_cast<Index>(near.size()));
   for (std::size_t k = 0; k < near.size(); ++k) {
     const Index i = near[k], to = first + static_cast<Index>(k);
     const std::int32_t part = solids.tag(fields::part)[i];
     const Body& body = model.bodies[static_cast<std::size_t>(part)];
-    skin.ids()[to] = static_cast<Id>(to);
-    skin.tag(fields::part)[to] = part;
-    skin.tag(fields::source)[to] = static_cast<std::int32_t>(solids.ids()[i]);
-    skin.tag(fields::source_set)[to] = number;
-    skin.vector(fields::position)[to] = solids.vector(fields::position)[i];
-    skin.vector(fields::velocity)[to] = solids.vector(fields::velocity)[i];
+    interface.ids()[to] = static_cast<Id>(to);
+    interface.tag(fields::part)[to] = part;
+    interface.tag(fields::source)[to] = static_cast<std::int32_t>(solids.ids()[i]);
+    interface.tag(fields::source_set)[to] = number;
+    interface.vector(fields::position)[to] = solids.vector(fields::position)[i];
+    interface.vector(fields::velocity)[to] = solids.vector(fields::velocity)[i];
     // Volume of the cell that the particle occupies.
-    skin.scalar(fields::reference_volume)[to] = std::pow(solids.spacing(), Dim);
-    skin.scalar(fields::no_slip)[to] = solid_of(model, body)->slip == "no_slip" ? 1 : 0;
+    interface.scalar(fields::reference_volume)[to] = std::pow(solids.spacing(), Dim);
+    interface.scalar(fields::no_slip)[to] = solid_of(model, body)->slip == "no_slip" ? 1 : 0;
     const Vec3 normal =
         outward_normal(*body.shape, to_space<Dim>(solids.vector(fields::reference_position)[i]),
                        0.5 * solids.spacing(), Dim);
-    skin.vector(fields::normal)[to] = skin.vector(fields::reference_normal)[to] =
+    interface.vector(fields::normal)[to] = interface.vector(fields::reference_normal)[to] =
         to_scene<Dim>(normal);
   }
 }
@@ -79,8 +79,8 @@ void follow(ParticleSet<Dim>& skin, const ParticleSet<Dim>& solids, std::int32_t
 }  // namespace
 
 template <int Dim>
-void add_skin(Scene<Dim>& scene, const Model& model, Filling filling) {
-  if (!has_skin(model)) return;
+void add_interface(Scene<Dim>& scene, const Model& model, Filling filling) {
+  if (!has_interface(model)) return;
   World<Dim>& world = *scene.world;
   double h = 0, spacing = 0;
   for (const auto& set : world.sets())
@@ -90,19 +90,19 @@ void add_skin(Scene<Dim>& scene, const Model& model, Filling filling) {
     }
   // A quarter more than a kernel: lists of contacts hold for an advection step, in which two bodies
   // may come 0.4 h closer. And the range of contact with walls, 1.5 of their spacings.
-  ParticleSet<Dim>& skin =
-      world.add_set("skin", "wall", spacing, std::max(1.25 * h, 1.6 * model.resolution), true);
+  ParticleSet<Dim>& interface =
+      world.add_set("interface", "wall", spacing, std::max(1.25 * h, 1.6 * model.resolution), true);
   for (const FieldSpec* f : {&fields::normal, &fields::reference_normal, &fields::no_slip,
                              &fields::source, &fields::source_set, &fields::reference_volume})
-    skin.require(*f);
+    interface.require(*f);
   if (filling == Filling::none) return;
-  const double depth = skin_depth(model);
+  const double depth = interface_depth(model);
   std::int32_t number = 0;
   for (const auto& set : world.sets())
-    if (set->phase() == "solid") follow(skin, *set, number++, model, depth);
+    if (set->phase() == "solid") follow(interface, *set, number++, model, depth);
 }
 
-template void add_skin<2>(Scene<2>&, const Model&, Filling);
-template void add_skin<3>(Scene<3>&, const Model&, Filling);
+template void add_interface<2>(Scene<2>&, const Model&, Filling);
+template void add_interface<3>(Scene<3>&, const Model&, Filling);
 
 }  // namespace sphgeo
