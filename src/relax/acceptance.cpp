@@ -75,18 +75,21 @@ class CellWater {
     const double d = distance_near(body_, at, half_diagonal_);
     if (d >= half_diagonal_) return 0;
     const WaterTarget::Where soil = target_.locate(at);
-    if (d > -half_diagonal_ || soil.holds < half_diagonal_) return cut(at);
+    if (d > -half_diagonal_ || soil.holds < half_diagonal_) return cut(at, d);
     if (soil.soil < 0) return 1;
     return uncut(soil.soil, at);
   }
 
  private:
-  double cut(const Vec3& at) const {
+  /// `distance`: of the middle to the surface of the body.
+  double cut(const Vec3& at, double distance) const {
+    const bool within = distance <= -half_diagonal_;
     const int n = parts(dim_);
     const double edge = dp_ / n;
     double sum = 0;
     for_each_part(at, dp_, n, dim_, [&](const Vec3& p) {
-      const double inside = std::clamp(0.5 - distance_near(body_, p, edge) / edge, 0.0, 1.0);
+      const double inside =
+          within ? 1.0 : std::clamp(0.5 - distance_near(body_, p, edge) / edge, 0.0, 1.0);
       if (inside > 0) sum += inside * checked(target_.mean_fraction(p, edge), p);
     });
     return sum / std::pow(n, dim_);

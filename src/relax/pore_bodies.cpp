@@ -16,7 +16,7 @@ namespace sphgeo {
 namespace {
 
 // Changes whenever other particles come out of the same deck.
-constexpr const char* method_version = "1";
+constexpr const char* method_version = "2";
 
 bool is_water(const Model& model, const Body& body) {
   const MaterialSpec* m = model.material(body.material);

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 
 #include "core/error.h"
 #include "core/text.h"
 #include "geometry/fill.h"
 #include "geometry/shapes.h"
 #include "relax/acceptance.h"
+#include "relax/smooth_fraction.h"
 
 namespace sphgeo {
 namespace {
@@ -65,6 +67,7 @@ PoreWater fill(const Model& model, const PoreBodies& pores, bool draft) {
   out.volume = water_volume(all) * std::pow(dp, dim);
   out.accepted = static_cast<Index>(accepted.size());
   Seeds seeds;
+  Aabb moving;
   std::vector<std::size_t> body;
   for (const std::size_t k : accepted) {
     const auto own =
@@ -76,18 +79,27 @@ PoreWater fill(const Model& model, const PoreBodies& pores, bool draft) {
     seeds.at.push_back(all[k].at);
     seeds.free.push_back(!fixed);
     out.moved += !fixed;
+    if (!fixed) moving.extend(all[k].at);
     body.push_back(own);
   }
   out.start = seeds.at;
   RelaxationOptions options;
   options.steps = draft && out.moved > quick ? 0 : model.relaxation.steps;
   options.tolerance = model.relaxation.tolerance;
-  options.water_h = model.numerics.h_factor_water.value_or(1.8) * dp;
-  RelaxedPositions relaxed = relax(*pores.water, target, std::move(seeds), dp, dim, options);
+  options.run_h = model.numerics.h_factor_water.value_or(1.8) * dp;
+  RelaxationTarget fraction;
+  std::optional<SmoothFraction> smooth;
+  if (out.moved > 0) {
+    smooth.emplace(*pores.water, target, moving.grown(2 * dp), dp, options.run_h, dim);
+    fraction.fraction = std::cref(*smooth);
+  }
+  fraction.smallest_fraction = WaterTarget::smallest;
+  fraction.volume = std::pow(dp, dim);
+  RelaxedPositions relaxed = relax(*pores.water, fraction, std::move(seeds), dp, dim, options);
   out.history = std::move(relaxed.history);
-  out.water_density_spread = relaxed.water_density_spread;
+  out.water_density_spread = relaxed.run_density_spread;
   out.interior = relaxed.interior;
-  out.water_fraction = std::move(relaxed.water_fraction);
+  out.water_fraction = std::move(relaxed.fraction);
   out.number_density = std::move(relaxed.number_density);
   out.start_density = std::move(relaxed.start_density);
 

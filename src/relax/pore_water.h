@@ -8,7 +8,8 @@
 
 #include "core/diagnostic.h"
 #include "core/state_file.h"
-#include "relax/relaxation.h"
+#include "geometry/relaxation.h"
+#include "relax/water_target.h"
 
 namespace sphgeo {
 

@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/parallel.h"
-#include "geometry/level_set_mesh.h"
+#include "sph/kernel.h"
 
 namespace sphgeo {
 
 SmoothFraction::SmoothFraction(const Shape& water, const WaterTarget& target, const Aabb& box,
                                double dp, double h, int dim)
     : dp_(dp) {
-  const RelaxKernel kernel(h, dim);
-  const auto reach = static_cast<Index>(std::ceil(kernel.support() / dp));
+  const auto reach = static_cast<Index>(std::ceil(2 * h / dp));
   // One more node than the box, and cells as far around as the kernel reaches.
   Index cells[3];
   for (int k = 0; k < 3; ++k) {
@@ -30,9 +30,11 @@ SmoothFraction::SmoothFraction(const Shape& water, const WaterTarget& target, co
     const Vec3 at = first + dp * Vec3(static_cast<double>(c % cells[0]),
                                       static_cast<double>(c / cells[0] % cells[1]),
                                       static_cast<double>(c / (cells[0] * cells[1])));
-    double nearest = distance_near(water, at, dp);
+    double nearest = std::numeric_limits<double>::infinity();
     for (const WaterTarget::Skeleton& s : target.soils())
       nearest = std::min(nearest, distance_near(*s.shape, at, dp));
+    // Farther inside does not count.
+    if (nearest > -0.5 * dp) nearest = std::min(nearest, distance_near(water, at, dp));
     const auto k = static_cast<std::size_t>(c);
     filled[k] = std::clamp(0.5 - nearest / dp, 0.0, 1.0);
     soil[k] = std::clamp(1 - target.mean_fraction(at, dp), 0.0, 1.0);
@@ -42,7 +44,8 @@ SmoothFraction::SmoothFraction(const Shape& water, const WaterTarget& target, co
   for (Index z = -reach; z <= reach; ++z)
     for (Index y = -margin_y; y <= margin_y; ++y)
       for (Index x = -reach; x <= reach; ++x) {
-        const double w = kernel.value(dp * std::sqrt(static_cast<double>(x * x + y * y + z * z)));
+        const double r2 = dp * dp * static_cast<double>(x * x + y * y + z * z);
+        const double w = dim == 2 ? Kernel<2>(h).w(r2) : Kernel<3>(h).w(r2);
         if (w <= 0) continue;
         weights.push_back(w);
         offsets.push_back((z * cells[1] + y) * cells[0] + x);

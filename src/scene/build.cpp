@@ -10,7 +10,7 @@
 #include "core/hash.h"
 #include "core/parallel.h"
 #include "geometry/fill.h"
-#include "geometry/relax_fill.h"
+#include "geometry/relaxation.h"
 #include "materials/water.h"
 #include "relax/pore_water.h"
 #include "scene/interface.h"
@@ -60,8 +60,8 @@ BodyPoints fill_body(const Body& body, const Model& model) {
   const Numerics& n = model.numerics;
   BodyPoints points;
   if (body.filling == "relaxed") {
-    RelaxFillResult relaxed = relax_fill(*body.shape, dp, model.dimension);
-    points = {std::move(relaxed.positions), relaxed.particle_volume};
+    RelaxedPositions relaxed = relax_fill(*body.shape, dp, model.dimension);
+    points = {std::move(relaxed.at), relaxed.volume};
   } else {
     points = {fill_lattice(*body.shape, dp, model.dimension), std::pow(dp, model.dimension)};
   }
