@@ -12,12 +12,6 @@ namespace {
 
 constexpr std::int32_t wholly_inside = -1, wholly_outside = -2;
 constexpr double nodes_per_h = 2.6;
-// Errors of a model of the surface in the middle of its cell, over the node distance: one that is
-// taken before all others, and one that is better than to ask the shape at every step.
-constexpr double good_model = 0.01;
-constexpr double fair_model = 0.1;
-// Planes that meet in a cell, at most.
-constexpr std::size_t most_planes = 6;
 
 }  // namespace
 
@@ -34,19 +28,17 @@ LevelSetMesh<Dim>::LevelSetMesh(const Vec3& lo, const Vec3& hi, double h, double
 }
 
 template <int Dim>
-LevelSetMesh<Dim>::LevelSetMesh(const Shape& shape, const Aabb& around, double h, double band,
-                                double level)
+LevelSetMesh<Dim>::LevelSetMesh(const Shape& shape, const Aabb& around, double h, double band)
     : LevelSetMesh(around.lo.array() - band, around.hi.array() + band, h, band) {
   fill(shape, [&](const Vec3& at) { return shape.bound(at); });
   if (shape.composed()) find_distances(shape);
   finish();
-  for_each_stored([&](Block& block) { choose_models(block, shape, level); });
 }
 
 template <int Dim>
 LevelSetMesh<Dim>::LevelSetMesh(const Shape& shape, const LevelSetMesh& finer, double h)
     : LevelSetMesh(finer.lo_, finer.hi_, h, finer.band_) {
-  fill(shape, [&](const Vec3& at) { return finer.distance(to_scene<Dim>(at)); });
+  fill(shape, [&](const Vec3& at) { return finer.distance(to_scene<Dim>(at)).value; });
   finish();
 }
 
@@ -81,14 +73,14 @@ void LevelSetMesh<Dim>::fill(const Shape& shape, F&& distance) {
       slot_[b] = wholly_outside;
     } else {
       slot_[b] = static_cast<std::int32_t>(stored_.size());
-      stored_.push_back({first_node(static_cast<Index>(b)), {}, {}, {}});
+      stored_.push_back({first_node(static_cast<Index>(b)), {}});
     }
   }
   for_each_stored([&](Block& block) {
     block.nodes.resize(static_cast<std::size_t>(block_nodes_));
     for (Index k = 0; k < block_nodes_; ++k)
       block.nodes[static_cast<std::size_t>(k)].distance =
-          static_cast<float>(distance(position(place(block, k))));
+          static_cast<float>(std::clamp(distance(position(place(block, k))), -band_, band_));
   });
 }
 
@@ -132,10 +124,7 @@ void LevelSetMesh<Dim>::finish() {
   for (const Block& block : stored_)
     for (const Node& n : block.nodes)
       volume_ += cell_volume * std::clamp(0.5 - n.distance / width_, 0.0, 1.0);
-  for_each_stored([&](Block& block) {
-    set_normals(block);
-    sum_outside(block);
-  });
+  for_each_stored([&](Block& block) { sum_outside(block); });
 }
 
 template <int Dim>
@@ -151,7 +140,8 @@ auto LevelSetMesh<Dim>::around(const Block& block, Index reach, F&& f) const -> 
   for (Index z = -reach; z < edge_ + reach; ++z)
     for (Index y = -out.reach_y(); y < edge_y_ + out.reach_y(); ++y)
       for (Index x = -reach; x < edge_ + reach; ++x)
-        out.value.push_back(f(node({block.first[0] + x, block.first[1] + y, block.first[2] + z})));
+        out.value.push_back(
+            f(*find({block.first[0] + x, block.first[1] + y, block.first[2] + z}).node));
   return out;
 }
 
@@ -164,171 +154,71 @@ Vec3 LevelSetMesh<Dim>::position(const Place& at) const {
 }
 
 template <int Dim>
-std::int32_t LevelSetMesh<Dim>::slot(const Place& at) const {
+auto LevelSetMesh<Dim>::find(const Place& at) const -> Found {
   for (std::size_t k = 0; k < 3; ++k)
-    if (at[k] < 0 || at[k] >= blocks_[k] * edge_) return wholly_outside;
-  return slot_[static_cast<std::size_t>(
-      ((at[2] / edge_) * blocks_[1] + at[1] / edge_) * blocks_[0] + at[0] / edge_)];
-}
-
-template <int Dim>
-auto LevelSetMesh<Dim>::node(const Place& at) const -> const Node& {
-  const std::int32_t s = slot(at);
-  if (s < 0) return deep_[s == wholly_outside];
-  return stored_[static_cast<std::size_t>(s)].nodes[static_cast<std::size_t>(
-      ((at[2] % edge_) * edge_y_ + at[1] % edge_) * edge_ + at[0] % edge_)];
-}
-
-template <int Dim>
-auto LevelSetMesh<Dim>::below(const Vec<Dim>& p) const -> Place {
-  const Vec3 at = (to_space<Dim>(p) - lo_) / width_;
-  Place low{};
-  for (int k = 0; k < 3; ++k)
-    if (Dim == 3 || k != 1)
-      low[static_cast<std::size_t>(k)] = static_cast<Index>(std::floor(at[k]));
-  return low;
+    if (at[k] < 0 || at[k] >= blocks_[k] * edge_) return {&deep_[1], false};
+  const std::int32_t s = slot_[static_cast<std::size_t>(
+      (at[2] / edge_ * blocks_[1] + at[1] / edge_) * blocks_[0] + at[0] / edge_)];
+  if (s < 0) return {&deep_[s == wholly_outside], false};
+  const Index k = (at[2] % edge_ * edge_y_ + at[1] % edge_) * edge_ + at[0] % edge_;
+  return {&stored_[static_cast<std::size_t>(s)].nodes[static_cast<std::size_t>(k)], true};
 }
 
 template <int Dim>
 template <class F>
-void LevelSetMesh<Dim>::for_each_corner(const Place& low, const Vec<Dim>& p, F&& f) const {
-  const Vec<Dim> from_low = p - to_scene<Dim>(position(low)), part = from_low / width_;
-  for (int k = 0; k < 1 << Dim; ++k) {
-    double weight = 1.0;
-    Place at = low;
-    Vec<Dim> from = from_low;
-    for (int d = 0; d < Dim; ++d) {
-      const int up = k >> d & 1;
-      weight *= up ? part[d] : 1.0 - part[d];
-      at[static_cast<std::size_t>(Dim == 2 ? 2 * d : d)] += up;
-      from[d] -= up * width_;
-    }
-    f(node(at), weight, from);
+Vec<Dim> LevelSetMesh<Dim>::for_each_corner(const Vec<Dim>& p, F&& f) const {
+  constexpr std::size_t axis[3] = {0, Dim == 2 ? 2 : 1, 2};
+  constexpr Index step[3] = {1, edge_, edge_ * edge_y_};
+  Vec<Dim> part = (p - to_scene<Dim>(lo_)) / width_;
+  Place low{};
+  bool one_block = true;  // as for most cells
+  for (int d = 0; d < Dim; ++d) {
+    const double whole = std::floor(part[d]);
+    part[d] -= whole;
+    low[axis[d]] = static_cast<Index>(whole);
+    one_block = one_block && low[axis[d]] % edge_ != edge_ - 1;
   }
+  const Found first = find(low);
+  for (int k = 0; k < 1 << Dim; ++k) {
+    Index offset = 0;
+    Place at = low;
+    for (int d = 0; d < Dim; ++d) {
+      offset += (k >> d & 1) * step[axis[d]];
+      at[axis[d]] += k >> d & 1;
+    }
+    f(k, one_block ? first.node[first.stored ? offset : 0] : *find(at).node);
+  }
+  return part;
 }
 
 template <int Dim>
 auto LevelSetMesh<Dim>::missing(const Vec<Dim>& p) const -> Missing {
+  Sums at[1 << Dim];
+  const Vec<Dim> part = for_each_corner(p, [&](int k, const Node& n) { at[k] = n.sums; });
+  for (int d = Dim - 1; d >= 0; --d)
+    for (int k = 0; k < 1 << d; ++k)
+      at[k] += static_cast<float>(part[d]) * (at[k + (1 << d)] - at[k]);
   Missing out;
-  for_each_corner(below(p), p, [&](const Node& n, double weight, const Vec<Dim>&) {
-    for (int d = 0; d < Dim; ++d) out.gradient[d] += weight * n.gradient[d];
-    out.sum += weight * n.sum;
-  });
+  for (int d = 0; d < Dim; ++d) out.gradient[d] = at[0][d];
+  out.sum = at[0][3];
   return out;
 }
 
 template <int Dim>
-double LevelSetMesh<Dim>::distance(const Vec<Dim>& p) const {
-  double out = 0.0;
-  for_each_corner(below(p), p, [&](const Node& n, double weight, const Vec<Dim>&) {
-    out += weight * n.distance;
-  });
-  return out;
-}
-
-template <int Dim>
-auto LevelSetMesh<Dim>::blend(const Place& low, const Vec<Dim>& p) const -> Tangent {
-  // Half of the slope at each corner makes linear interpolation exact for parabolas.
-  Tangent out{p, Vec<Dim>::Zero(), 0.0};
-  for_each_corner(low, p, [&](const Node& n, double weight, const Vec<Dim>& from) {
-    double d = n.distance;
-    for (int k = 0; k < Dim; ++k) {
-      d += 0.5 * n.normal[k] * from[k];
-      out.normal[k] += weight * n.normal[k];
+auto LevelSetMesh<Dim>::distance(const Vec<Dim>& p) const -> Distance {
+  double at[1 << Dim];
+  const Vec<Dim> part = for_each_corner(p, [&](int k, const Node& n) { at[k] = n.distance; });
+  Distance out;
+  for (int k = 0; k < 1 << Dim; ++k)
+    for (int d = -1; d < Dim; ++d) {  // the value, then the slope along each axis
+      double weight = at[k];
+      for (int e = 0; e < Dim; ++e) {
+        const bool up = k >> e & 1;
+        weight *= e == d ? (up ? 1.0 : -1.0) / width_ : up ? part[e] : 1.0 - part[e];
+      }
+      (d < 0 ? out.value : out.gradient[d]) += weight;
     }
-    out.distance += weight * d;
-  });
   return out;
-}
-
-template <int Dim>
-auto LevelSetMesh<Dim>::tangents(const Place& low) const -> std::vector<Tangent> {
-  // Beside an edge each node that does not see both sides knows one plane.
-  std::vector<Tangent> out;
-  const Vec<Dim> middle = to_scene<Dim>(position(low)) + Vec<Dim>::Constant(0.5 * width_);
-  for (Index z = -1; z <= 2; ++z)
-    for (Index y = Dim == 3 ? -1 : 0; y <= (Dim == 3 ? 2 : 0); ++y)
-      for (Index x = -1; x <= 2; ++x) {
-        const Place at{low[0] + x, low[1] + y, low[2] + z};
-        const Node& n = node(at);
-        Tangent t{to_scene<Dim>(position(at)), Vec<Dim>::Zero(), n.distance};
-        for (int d = 0; d < Dim; ++d) t.normal[d] = n.normal[d];
-        if (std::abs(t.normal.norm() - 1.0) > 1e-3) continue;
-        const bool known = std::any_of(out.begin(), out.end(), [&](const Tangent& other) {
-          return (other.normal - t.normal).norm() < 1e-2 &&
-                 std::abs(other(middle) - t(middle)) < good_model * width_;
-        });
-        if (!known) out.push_back(t);
-      }
-  return out;
-}
-
-template <int Dim>
-bool LevelSetMesh<Dim>::move_below(Vec<Dim>& p, double level) const {
-  const Place low = below(p);
-  const std::int32_t s = slot(low);
-  if (s < 0) return false;
-  const Block& block = stored_[static_cast<std::size_t>(s)];
-  const auto k = static_cast<std::size_t>(((low[2] % edge_) * edge_y_ + low[1] % edge_) * edge_ +
-                                          low[0] % edge_);
-  const std::int16_t model = block.model.empty() ? none : block.model[k];
-  if (model == none) return false;
-  if (model == smooth) {
-    const Tangent t = blend(low, p);
-    p -= std::max(0.0, t.distance - level) * t.normal.normalized();
-    return true;
-  }
-  // Planes that are not at right angles want to be asked again.
-  for (int round = 0; round < 3; ++round)
-    for (const Tangent& t : block.edges[static_cast<std::size_t>(model)])
-      p -= std::max(0.0, t(p) - level) * t.normal;
-  return true;
-}
-
-template <int Dim>
-void LevelSetMesh<Dim>::set_normals(Block& block) const {
-  Place at;
-  auto n = block.nodes.begin();
-  for (at[2] = block.first[2]; at[2] < block.first[2] + edge_; ++at[2])
-    for (at[1] = block.first[1]; at[1] < block.first[1] + edge_y_; ++at[1])
-      for (at[0] = block.first[0]; at[0] < block.first[0] + edge_; ++at[0], ++n) {
-        if (std::abs(n->distance) > 0.9 * band_) continue;
-        for (int d = 0; d < Dim; ++d) {
-          Place before = at, after = at;
-          const auto axis = static_cast<std::size_t>(Dim == 2 ? 2 * d : d);
-          --before[axis];
-          ++after[axis];
-          n->normal[d] =
-              static_cast<float>((node(after).distance - node(before).distance) / (2.0 * width_));
-        }
-      }
-}
-
-template <int Dim>
-void LevelSetMesh<Dim>::choose_models(Block& block, const Shape& shape, double level) const {
-  block.model.assign(block.nodes.size(), none);
-  for (std::size_t k = 0; k < block.nodes.size(); ++k) {
-    if (std::abs(block.nodes[k].distance - level) > 2.5 * width_) continue;
-    const Place low = place(block, static_cast<Index>(k));
-    const Vec<Dim> middle = to_scene<Dim>(position(low)) + Vec<Dim>::Constant(0.5 * width_);
-    const Tangent t = blend(low, middle);
-    if (std::abs(t.distance - level) > 1.2 * width_) continue;
-    const double distance = shape.signed_distance(to_space<Dim>(middle));
-    const double smooth_error =
-        std::abs(t.normal.norm() - 1.0) < 0.3 ? std::abs(t.distance - distance) : width_;
-    if (smooth_error > good_model * width_) {
-      std::vector<Tangent> planes = tangents(low);
-      double largest = -1e300;
-      for (const Tangent& plane : planes) largest = std::max(largest, plane(middle));
-      if (planes.size() <= most_planes &&
-          std::abs(largest - distance) < std::min(smooth_error, fair_model * width_)) {
-        block.model[k] = static_cast<std::int16_t>(block.edges.size());
-        block.edges.push_back(std::move(planes));
-        continue;
-      }
-    }
-    if (smooth_error < fair_model * width_) block.model[k] = smooth;
-  }
 }
 
 template <int Dim>
@@ -381,8 +271,8 @@ void LevelSetMesh<Dim>::sum_outside(Block& block) const {
     }
     for (Index x = 0; x < edge_; ++x) {
       if (!wanted(n[x])) continue;
-      n[x].sum = value[x];
-      for (int d = 0; d < Dim; ++d) n[x].gradient[d] = gradient[d][x];
+      for (int d = 0; d < Dim; ++d) n[x].sums[d] = gradient[d][x];
+      n[x].sums[3] = value[x];
     }
   }
 }

@@ -17,9 +17,8 @@ template <int Dim>
 class LevelSetMesh {
  public:
   /// Around a box [m], for smoothing length h [m]; nodes are h / 2.6 apart, and distances are known
-  /// within `band` [m] of the surface. Within a node distance of the level set `level` [m] it is
-  /// prepared for move_below().
-  LevelSetMesh(const Shape& shape, const Aabb& around, double h, double band, double level);
+  /// within `band` [m] of the surface.
+  LevelSetMesh(const Shape& shape, const Aabb& around, double h, double band);
   /// Of the same shape for a larger smoothing length, with the distances of another mesh.
   LevelSetMesh(const Shape& shape, const LevelSetMesh& finer, double h);
 
@@ -30,13 +29,14 @@ class LevelSetMesh {
   /// Interpolated at p; zero deep inside.
   Missing missing(const Vec<Dim>& p) const;
 
-  /// The signed distance, interpolated linearly; at least (at most) the band beyond it.
-  double distance(const Vec<Dim>& p) const;
-
-  /// Moves p along normals until its distance is at most `level`, to 1 % of the node distance.
-  /// False, and p as it was, where the mesh cannot tell: away from the level it was made for, and
-  /// where the surface is bent too much.
-  bool move_below(Vec<Dim>& p, double level) const;
+  struct Distance {
+    double value = 0.0;  ///< m
+    Vec<Dim> gradient = Vec<Dim>::Zero();
+  };
+  /// The signed distance, interpolated linearly and no larger than the band on either side. Where
+  /// parts of the shape touch, deep inside, it may be that of a point nearer to the surface. The
+  /// gradient has the length 1 where the surface is plane, and less beside its edges.
+  Distance distance(const Vec<Dim>& p) const;
 
   /// Volume (area in 2D) inside the shape, within the box.
   double volume() const { return volume_; }
@@ -47,26 +47,14 @@ class LevelSetMesh {
   static constexpr Index block_nodes_ = edge_ * edge_y_ * edge_;
   using Place = std::array<Index, 3>;  // of a node; [1] is 0 in 2D
 
+  using Sums = Eigen::Array<float, 4, 1>;  // the gradient and, last, the sum
   struct Node {
+    Sums sums = Sums::Zero();
     float distance = 0;
-    float normal[Dim] = {};    // central differences of the distance
-    float gradient[Dim] = {};  // the sums
-    float sum = 0;
   };
-  /// A distance and its slope at a point.
-  struct Tangent {
-    Vec<Dim> at, normal;
-    double distance;
-    double operator()(const Vec<Dim>& p) const { return distance + normal.dot(p - at); }
-  };
-  // Models of the surface in a cell: none; distances interpolated to second order; or this and
-  // more, one of Block::edges: the largest of a few linear distances.
-  static constexpr std::int16_t none = -2, smooth = -1;
   struct Block {
     Place first;  // its first node
     std::vector<Node> nodes;
-    std::vector<std::int16_t> model;  // of the surface, in the cell above each node
-    std::vector<std::vector<Tangent>> edges;
   };
   /// A number for each node of a block and of those around it, x fastest.
   struct Around {
@@ -89,20 +77,20 @@ class LevelSetMesh {
   void for_each_stored(F&& f);
   template <class F>
   Around around(const Block& block, Index reach, F&& f) const;
-  void set_normals(Block& block) const;
   void sum_outside(Block& block) const;
-  void choose_models(Block& block, const Shape& shape, double level) const;
-  std::vector<Tangent> tangents(const Place& low) const;
 
   static Place place(const Block& block, Index k);
-  std::int32_t slot(const Place& at) const;
-  const Node& node(const Place& at) const;  // one of deep_ where nothing is stored
+  /// A node; stored: among those of its block, else one that stands for all of the block.
+  struct Found {
+    const Node* node;
+    bool stored;
+  };
+  Found find(const Place& at) const;
   Vec3 position(const Place& at) const;
-  Place below(const Vec<Dim>& p) const;
-  /// Calls f(node, weight, p - its position) for the corners of the cell of p above `low`.
+  /// Calls f(k, node) for the corners of the cell of p: bit d of k tells the side along axis d.
+  /// Returns the place of p in the cell, from 0 to 1.
   template <class F>
-  void for_each_corner(const Place& low, const Vec<Dim>& p, F&& f) const;
-  Tangent blend(const Place& low, const Vec<Dim>& p) const;
+  Vec<Dim> for_each_corner(const Vec<Dim>& p, F&& f) const;
 
   Vec3 lo_, hi_;
   double h_, width_, band_;

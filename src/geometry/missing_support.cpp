@@ -12,12 +12,12 @@ constexpr double mesh_ratio = 1.2;
 
 template <int Dim>
 MissingSupport<Dim>::MissingSupport(const Shape& shape, const Aabb& around, double h_low,
-                                    double h_high, double level)
+                                    double h_high)
     : h_{h_low} {
   const int intervals =
       static_cast<int>(std::ceil(std::log(h_high / h_low) / std::log(mesh_ratio) - 1e-9));
   mesh_.reserve(static_cast<std::size_t>(intervals) + 1);
-  mesh_.emplace_back(shape, around, h_low, 2.5 * h_high, level);
+  mesh_.emplace_back(shape, around, h_low, 2.5 * h_high);
   for (int k = 1; k <= intervals; ++k) {
     h_.push_back(h_low * std::pow(h_high / h_low, static_cast<double>(k) / intervals));
     mesh_.emplace_back(shape, mesh_.front(), h_.back());

@@ -12,9 +12,8 @@ namespace sphgeo {
 template <int Dim>
 class MissingSupport {
  public:
-  /// Meshes around the box `around` for smoothing lengths from h_low to h_high [m]; `level` as for
-  /// LevelSetMesh.
-  MissingSupport(const Shape& shape, const Aabb& around, double h_low, double h_high, double level);
+  /// Meshes around the box `around` for smoothing lengths from h_low to h_high [m].
+  MissingSupport(const Shape& shape, const Aabb& around, double h_low, double h_high);
 
   /// Sums over the outside of the shape at p for the smoothing length h; zero deep inside.
   typename LevelSetMesh<Dim>::Missing operator()(const Vec<Dim>& p, double h) const;

@@ -16,10 +16,13 @@ namespace {
 // Displacement of a step over h^2 times the sum of gradients, and its limit over the spacing.
 constexpr double relaxation_gain = 0.3;
 constexpr double longest_move = 0.1;
-// Shares of dp: how far particles may come too near to the surface before an exact distance is
-// asked on the way, and what an interpolated one may be wrong by.
+// An interpolated distance is taken for that to a plane when the length of its gradient is 1 to
+// within this.
+constexpr double plane_enough = 0.01;
+// Shares of dp: what any other may be too small by, and how far particles may come too near to the
+// surface there, on the way, before the distance itself is asked.
+constexpr double interpolation_error = 0.2;
 constexpr double bounding_slack = 0.02;
-constexpr double interpolation_error = 0.1;
 // A kernel that misses less than this does not reach the surface: it ends 1.8 h away from a plane.
 constexpr double nothing_missed = 1e-6;
 
@@ -130,23 +133,14 @@ class Relaxer {
     // Particles wander: a reserve for what they find.
     low = std::max(target_.smallest_fraction, 0.8 * low);
     high = std::min(1.0, 1.25 * high);
-    missing_.emplace(shape_, box.grown(2 * dp_), smoothing_length(high), smoothing_length(low),
-                     -0.5 * dp_);
+    missing_.emplace(shape_, box.grown(2 * dp_), smoothing_length(high), smoothing_length(low));
     if (volume_of_one_ == 0)
       volume_of_one_ = missing_->surface().volume() / static_cast<double>(r_.size());
     const Vec3 margin = Vec3::Constant(dp_);
     frame_ = FixedPoint<Dim>::fit(to_scene<Dim>(all.lo - margin), to_scene<Dim>(all.hi + margin),
                                   2 * smoothing_length(target_.smallest_fraction));
     sums_.emplace(frame_, static_cast<Index>(r_.size()), moving_);
-    for_moving([&](Index i) {
-      at(depth_, i) = distance_limit(i);
-      bound(i, options_.steps == 0);
-    });
-  }
-
-  /// An upper limit of the signed distance of a particle.
-  double distance_limit(Index i) const {
-    return missing_->surface().distance(at(r_, i)) + interpolation_error * dp_;
+    for_moving([&](Index i) { bound(i, options_.steps == 0); });
   }
 
   /// Number density, and the bracket of Eq. 84.
@@ -178,32 +172,35 @@ class Relaxer {
     });
   }
 
-  /// Surface bounding, Eq. 86. depth_ is an upper limit of the signed distance: it grows with the
-  /// way travelled, and only particles that may have come near the surface look again.
+  /// Surface bounding, Eq. 86. depth_ is about the signed distance, or more: it grows with the way
+  /// travelled, and only particles that may have come near the surface look again. On the way the
+  /// mesh tells where the surface is plane for it; the distance itself may be expensive.
   void bound(Index i, bool exactly) {
     double& depth = at(depth_, i);
-    const double level = -0.5 * dp_;
-    if (depth < (exactly ? level - interpolation_error * dp_ : level)) return;
+    const double level = -0.5 * dp_, error = interpolation_error * dp_;
+    if (depth < (exactly ? level - error : level)) return;
     Vec<Dim>& p = at(r_, i);
-    if (!exactly) {
-      if (missing_->surface().move_below(p, level)) {
-        depth = std::min(depth, level + interpolation_error * dp_);
-        return;
-      }
-      if (depth < level + bounding_slack * dp_) return;
+    const auto known = missing_->surface().distance(p);
+    if (!exactly && std::abs(known.gradient.norm() - 1) < plane_enough) {
+      if (known.value > level) p -= (known.value - level) * known.gradient.normalized();
+      depth = std::min(known.value, level);
+      return;
     }
-    double d = shape_.signed_distance(to_space<Dim>(p));
+    depth = std::min(depth, known.value + error);
+    if (depth < (exactly ? level : level + bounding_slack * dp_)) return;
+    depth = shape_.signed_distance(to_space<Dim>(p));
     // Again where the first projection, along a straight normal, missed by a thousandth.
-    for (int k = 0; k < 3 && d > level + 0.001 * dp_; ++k) {
-      p -= (d - level) * to_scene<Dim>(outward_normal(shape_, to_space<Dim>(p), 0.05 * dp_, Dim));
-      d = shape_.signed_distance(to_space<Dim>(p));
+    for (int k = 0; k < 3 && depth > level + 0.001 * dp_; ++k) {
+      const Vec<Dim> normal =
+          exactly ? to_scene<Dim>(outward_normal(shape_, to_space<Dim>(p), 0.05 * dp_, Dim))
+                  : known.gradient.normalized();
+      p -= (depth - level) * normal;
+      depth = shape_.signed_distance(to_space<Dim>(p));
     }
-    depth = d;
   }
 
   /// Free particles whose kernel does not reach the surface; all free ones when there are none.
   void find_interior() {
-    for_moving([&](Index i) { at(depth_, i) = std::min(at(depth_, i), distance_limit(i)); });
     inner_.clear();
     for (const Index i : moving_)
       if (at(missed_, i) < nothing_missed) inner_.push_back(i);
@@ -271,7 +268,7 @@ class Relaxer {
   std::vector<Index> moving_, inner_;
   double volume_of_one_;
   std::vector<double> volume_, fraction_, h_, density_;
-  std::vector<double> depth_;   // upper limit of the signed distance
+  std::vector<double> depth_;   // about the signed distance, or more
   std::vector<double> missed_;  // by the kernel beyond the surface
   std::vector<double> way_;     // of the last step, over the spacing
   std::vector<Vec<Dim>> gradient_;

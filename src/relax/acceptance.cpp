@@ -72,18 +72,26 @@ class CellWater {
         half_diagonal_(0.5 * std::sqrt(dim) * dp * (1 + 1e-9)) {}
 
   double operator()(const Vec3& at) const {
-    const double d = distance_near(body_, at, half_diagonal_);
-    if (d >= half_diagonal_) return 0;
+    const double bound = body_.bound(at);
+    if (bound >= half_diagonal_) return 0;
+    const bool within = bound <= -half_diagonal_ || covers(at);
     const WaterTarget::Where soil = target_.locate(at);
-    if (d > -half_diagonal_ || soil.holds < half_diagonal_) return cut(at, d);
+    if (!within || soil.holds < half_diagonal_) return cut(at, within);
     if (soil.soil < 0) return 1;
     return uncut(soil.soil, at);
   }
 
  private:
-  /// `distance`: of the middle to the surface of the body.
-  double cut(const Vec3& at, double distance) const {
-    const bool within = distance <= -half_diagonal_;
+  /// Whether the body fills a cell, as far as the corners of its parts tell: cheaper than the
+  /// distance within a body whose parts touch.
+  bool covers(const Vec3& at) const {
+    const int n = parts(dim_) + 1;
+    bool all = true;
+    for_each_part(at, dp_ * n / (n - 1), n, dim_,
+                  [&](const Vec3& p) { all = all && body_.bound(p) <= 0; });
+    return all;
+  }
+  double cut(const Vec3& at, bool within) const {
     const int n = parts(dim_);
     const double edge = dp_ / n;
     double sum = 0;

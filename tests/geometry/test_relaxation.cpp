@@ -89,7 +89,7 @@ TEST_SUITE("geometry") {
     Box b;
     b.max = {2, 2, 2};
     b.flat = dim == 2;
-    const MissingSupport<dim> missing(b, b.box(), h, 2 * h, -0.05);
+    const MissingSupport<dim> missing(b, b.box(), h, 2 * h);
     CHECK(missing.surface().volume() == doctest::Approx(dim == 2 ? 4.0 : 8.0).epsilon(0.005));
     const auto at = [](double x) { return to_scene<dim>(Vec3(x, dim == 2 ? 0.0 : 1.0, 1)); };
     CHECK(missing(at(1), h).sum == 0.0);
@@ -116,37 +116,40 @@ TEST_SUITE("geometry") {
     }
   }
 
-  TEST_CASE("relaxation: the mesh keeps points below a level, on faces, edges and bends") {
+  TEST_CASE("relaxation: distances of the mesh, and where its surface is plane") {
     const OneThread one;
-    const double dp = 0.1;
+    const double dp = 0.1, band = 3 * dp;
     for (const char* yaml :
          {"{type: sphere, center: [0, 0, 0], radius: 0.5}",
           "{type: box, min: [-0.6, -0.5, -0.4], max: [0.6, 0.5, 0.4]}",
           "{type: difference, of: [{type: box, min: [-1, -1, -1], max: [1, 1, 1]},"
-          " {type: sphere, center: [0, 0, 0], radius: 0.12}]}"}) {
-      CAPTURE(yaml);
+          " {type: sphere, center: [0, 0, 0], radius: 0.12}]}",
+          // Two parts that touch: their seam is no surface.
+          "{type: union, of: [{type: box, min: [-0.6, -0.5, -0.4], max: [0, 0.5, 0.4]},"
+          " {type: box, min: [0, -0.5, -0.4], max: [0.6, 0.5, 0.4]}]}"}) {
+      CAPTURE(std::string(yaml));
       const ShapePtr s = shape_of(yaml, 3);
-      const LevelSetMesh<3> mesh(*s, s->box(), 1.3 * dp, 3.0 * dp, -0.5 * dp);
-      int asked = 0, told = 0, good = 0;
+      const LevelSetMesh<3> mesh(*s, s->box(), 1.3 * dp, band);
+      const bool seam = s->type == "union";
+      int asked = 0, plane = 0;
       const Aabb box = s->box();
       for (int k = 0; k < 30 * 30 * 30; ++k) {
         const Vec3 p =
             box.lo + (box.hi - box.lo)
                          .cwiseProduct(Vec3(k % 30 + 0.5, k / 30 % 30 + 0.5, k / 900 + 0.5) / 30);
         const double d = s->signed_distance(p);
-        if (d < 0) CHECK(std::abs(mesh.distance(p) - std::max(d, -3.0 * dp)) < 0.2 * dp);
-        if (std::abs(d + 0.5 * dp) > 0.3 * dp) continue;
+        if (d >= 0) continue;
+        const auto found = mesh.distance(p);
+        CHECK(found.value >= -band - 1e-6);
+        if (seam && d < -0.5 * dp) CHECK(found.value < -0.3 * dp);  // deep, but not how deep
+        else CHECK(std::abs(found.value - std::max(d, -band)) < 0.2 * dp);
+        if (d < -0.75 * dp) continue;
         ++asked;
-        Vec3 q = p;
-        if (!mesh.move_below(q, -0.5 * dp)) continue;
-        ++told;
-        const double after = s->signed_distance(q);
-        CHECK(after < -0.47 * dp);
-        if (d < -0.53 * dp) CHECK(q == p);
-        good += std::abs(after - std::min(d, -0.5 * dp)) < 0.01 * dp;
+        if (std::abs(found.gradient.norm() - 1) > 0.01) continue;
+        ++plane;
+        CHECK(std::abs(found.value - d) < 0.02 * dp);
       }
-      CHECK(told > 0.9 * asked);
-      CHECK(good > 0.8 * told);
+      CHECK(plane > 0.4 * asked);  // a bent surface of so few nodes is plane in half of its cells
     }
   }
 
