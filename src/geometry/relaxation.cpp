@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 #include "geometry/fill.h"
-#include "geometry/missing_support.h"
+#include "geometry/level_set_mesh.h"
 #include "geometry/normal.h"
 #include "sph/variable_sums.h"
 
@@ -38,14 +38,10 @@ class Relaxer {
         r_(seeds.at.size()),
         free_(std::move(seeds.free)),
         volume_of_one_(target.volume),
-        volume_(r_.size()),
         fraction_(r_.size(), 1.0),
-        h_(r_.size()),
         density_(r_.size(), 1.0),
-        depth_(r_.size()),
-        missed_(r_.size()),
-        way_(r_.size()),
         gradient_(r_.size()) {
+    for (auto* each : {&volume_, &h_, &depth_, &missed_, &way_}) each->resize(r_.size());
     if (free_.empty()) free_.assign(r_.size(), 1);
     for (std::size_t k = 0; k < r_.size(); ++k) {
       r_[k] = to_scene<Dim>(seeds.at[k]);
@@ -55,32 +51,30 @@ class Relaxer {
 
   RelaxedPositions run() {
     RelaxedPositions out;
-    for_all([&](Index i) { set_target(i); });
+    set_targets();
     if (!moving_.empty()) {
       prepare();
-      for_all([&](Index i) { set_target(i); });
+      set_targets();
       sum();
       find_interior();
-      out.start_density = density_;
       out.history.push_back(state());
-      for (int step = 1; step <= options_.steps; ++step) {
-        take_step();
-        const bool last = step == options_.steps || mean_way() < options_.tolerance;
-        if (last)
-          for_moving([&](Index i) {
-            bound(i, true);
-            set_target(i);
-          });
-        sum();
-        if (last || step % 10 == 0) find_interior();
-        out.history.push_back(state());
-        if (last) break;
-      }
-      out.interior = static_cast<Index>(inner_.size());
-      if (options_.run_h > 0) out.run_density_spread = run_spread();
-    } else {
-      out.start_density = density_;
     }
+    out.start_density = density_;
+    bool last = moving_.empty() || options_.steps == 0;
+    for (int step = 1; !last; ++step) {
+      take_step();
+      last = step == options_.steps || mean_way() < options_.tolerance;
+      if (last)
+        for_moving([&](Index i) {
+          bound(i, true);
+          set_target(i);
+        });
+      sum();
+      if (last || step % 10 == 0) find_interior();
+      out.history.push_back(state());
+    }
+    out.interior = static_cast<Index>(inner_.size());
+    if (options_.run_h > 0 && !inner_.empty()) out.run_density_spread = run_spread();
     for (const Vec<Dim>& p : r_) out.at.push_back(to_space<Dim>(p));
     out.fraction = std::move(fraction_);
     out.number_density = std::move(density_);
@@ -96,10 +90,6 @@ class Relaxer {
   template <class T>
   static const T& at(const std::vector<T>& v, Index i) {
     return v[static_cast<std::size_t>(i)];
-  }
-  template <class F>
-  void for_all(F&& f) const {
-    parallel_for(static_cast<Index>(r_.size()), f);
   }
   template <class F>
   void for_moving(F&& f) const {
@@ -118,6 +108,10 @@ class Relaxer {
       at(fraction_, i) = target_.fraction(to_space<Dim>(at(r_, i)));
     at(volume_, i) = volume_of_one_ / at(fraction_, i);
     at(h_, i) = smoothing_length(at(fraction_, i));
+  }
+
+  void set_targets() {
+    parallel_for(static_cast<Index>(r_.size()), [&](Index i) { set_target(i); });
   }
 
   /// The background meshes around all that moves, and the first bounding.

@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 #include "geometry/fill.h"
-#include "geometry/missing_support.h"
+#include "geometry/level_set_mesh.h"
 #include "geometry/relaxation.h"
 #include "read_shape.h"
 #include "sph/kernel.h"
