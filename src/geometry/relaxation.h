@@ -59,8 +59,8 @@ struct RelaxedPositions {
 /// V / phi(x_j) (Eq. 81) and h_i = h_factor dp phi(x_i)^(-1/dim). The displacement of a step
 /// is that of Eqs. 84 and 85 with the pseudo time step of the acceleration criterion. On the way,
 /// particles may come 0.02 dp nearer to the surface than the half spacing of Eq. 86, and more near
-/// edges of small shapes; in the end none does. The history looks at free particles deeper than
-/// the reach 2 h_i of their kernel below the surface, and at all free ones when there are none.
+/// edges of small shapes; in the end none does. The history looks at free particles whose
+/// kernel misses nothing beyond the surface, and at all free ones when there are none.
 /// What is not free has phi = 1. The same bits for any number of threads.
 RelaxedPositions relax(const Shape& shape, const RelaxationTarget& target, Seeds seeds, double dp,
                        int dim, const RelaxationOptions& options);
