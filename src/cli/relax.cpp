@@ -1,7 +1,7 @@
 #include <iostream>
 
 #include "cli/commands.h"
-#include "run/relax_deck.h"
+#include "relax/relax_deck.h"
 #include "run/relaxation_report.h"
 
 namespace sphgeo {

@@ -6,7 +6,7 @@
 
 #include "deck/model.h"
 #include "output/series.h"
-#include "relax/pore_water.h"
+#include "scene/pore_water.h"
 
 namespace sphgeo {
 

@@ -9,7 +9,7 @@
 #include "boundaries/boundary.h"
 #include "core/diagnostic.h"
 #include "deck/model.h"
-#include "relax/pore_water.h"
+#include "scene/pore_water.h"
 #include "sph/world.h"
 
 namespace sphgeo {

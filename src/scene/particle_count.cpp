@@ -4,9 +4,9 @@
 #include "boundaries/exchange.h"
 #include "geometry/fill.h"
 #include "materials/solid.h"
-#include "relax/pore_water.h"
 #include "scene/build.h"
 #include "scene/interface.h"
+#include "scene/pore_water.h"
 
 namespace sphgeo {
 namespace {

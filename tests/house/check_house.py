@@ -8,11 +8,10 @@ import re
 import sys
 from pathlib import Path
 
-# Lowest first; the rooms of one tuple are neighbours. `relax` is below `scene`, which places the water
-# in the pores of soil by it.
+# Lowest first; the rooms of one tuple are neighbours.
 ROOMS = [("core",), ("deck",), ("particles",), ("sph",), ("geometry", "materials"),
-         ("relax",), ("boundaries", "effects", "probes"), ("scene",), ("plan",), ("solve", "output"),
-         ("run",), ("study", "report", "compare"), ("cli",)]
+         ("boundaries", "effects", "probes"), ("scene",), ("plan",), ("solve", "output"),
+         ("run",), ("relax", "study", "report", "compare"), ("cli",)]
 LEVEL = {room: level for level, rooms in enumerate(ROOMS) for room in rooms}
 # Rooms that run a scene and have no business with the deck.
 MODEL_FREE = ("particles", "sph", "effects", "plan")

@@ -20,7 +20,7 @@
 #include "core/version.h"
 #include "output/pvd.h"
 #include "output/temporary_folder.h"
-#include "run/relax_deck.h"
+#include "relax/relax_deck.h"
 
 using namespace sphgeo;
 using Json = nlohmann::ordered_json;

@@ -1,4 +1,4 @@
-#include "relax/pore_water.h"
+#include "scene/pore_water.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -62,7 +62,7 @@ double particles_between(const PoreWater& w, double low, double high) {
   return n;
 }
 
-std::vector<std::string> findings(const std::string& text) {
+std::vector<std::string> pore_findings(const std::string& text) {
   const Model model = read_deck_text(text);
   Diagnostics found;
   (void)pore_water(model, found);
@@ -73,7 +73,7 @@ std::vector<std::string> findings(const std::string& text) {
 
 }  // namespace
 
-TEST_SUITE("relax") {
+TEST_SUITE("scene") {
   TEST_CASE("uniform porosity: mass, spread and place of the water") {
     const PoreWater w = relaxed(deck(2, 0.025, square, soil(square, "0.5")));
     check_count(w, 0.5, 0.025, 2);
@@ -251,14 +251,15 @@ TEST_SUITE("relax") {
   }
 
   TEST_CASE("what cannot be filled is refused; dry soil and water beside it are no case for it") {
-    CHECK(findings(deck(2, 0.05, square, soil(square, "0.01"))) ==
+    CHECK(pore_findings(deck(2, 0.05, square, soil(square, "0.01"))) ==
           std::vector<std::string>{"E131"});
-    CHECK(findings(deck(2, 0.05, square, soil(square, "1/(x-x)"))) ==
+    CHECK(pore_findings(deck(2, 0.05, square, soil(square, "1/(x-x)"))) ==
           std::vector<std::string>{"E131"});
-    CHECK(findings(deck(2, 0.05, square, soil(square, "1.5"))) == std::vector<std::string>{"E131"});
+    CHECK(pore_findings(deck(2, 0.05, square, soil(square, "1.5"))) ==
+          std::vector<std::string>{"E131"});
     const std::string beside =
         deck(2, 0.05, square, soil("{type: box, min: [1, 0, 0], max: [2, 1, 1]}", "0.5"));
-    CHECK(findings(beside).empty());
+    CHECK(pore_findings(beside).empty());
     CHECK_FALSE(pore_bodies(read_deck_text(beside)).has_value());
     CHECK(expected_shares(read_deck_text(beside)) == std::vector<double>{1, 1});
   }

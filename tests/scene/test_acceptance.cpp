@@ -1,4 +1,4 @@
-#include "relax/acceptance.h"
+#include "scene/acceptance.h"
 
 #include <doctest/doctest.h>
 
@@ -35,7 +35,7 @@ double variance(const std::vector<Candidate>& all, const std::vector<std::size_t
 
 }  // namespace
 
-TEST_SUITE("relax") {
+TEST_SUITE("scene") {
   TEST_CASE("the curve visits every cell once, from neighbor to neighbor") {
     for (const int dim : {2, 3}) {
       const int bits = 3, edge = 8;

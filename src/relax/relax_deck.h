@@ -1,8 +1,8 @@
 #pragma once
 // The relaxation of a deck's water in soil as a job of its own, with a folder like that of a run.
 
-#include "relax/pore_water.h"
 #include "run/run_deck.h"
+#include "scene/pore_water.h"
 
 namespace sphgeo {
 

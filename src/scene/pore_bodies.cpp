@@ -10,7 +10,7 @@
 #include "core/text.h"
 #include "deck/yaml_writer.h"
 #include "geometry/shapes.h"
-#include "relax/pore_water.h"
+#include "scene/pore_water.h"
 
 namespace sphgeo {
 namespace {

@@ -9,7 +9,7 @@
 #include "core/diagnostic.h"
 #include "core/state_file.h"
 #include "geometry/relaxation.h"
-#include "relax/water_target.h"
+#include "scene/water_target.h"
 
 namespace sphgeo {
 

@@ -1,4 +1,4 @@
-#include "relax/water_target.h"
+#include "scene/water_target.h"
 
 #include <algorithm>
 #include <cmath>

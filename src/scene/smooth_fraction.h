@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "relax/water_target.h"
+#include "scene/water_target.h"
 
 namespace sphgeo {
 

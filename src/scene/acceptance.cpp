@@ -1,4 +1,4 @@
-#include "relax/acceptance.h"
+#include "scene/acceptance.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "relax/water_target.h"
+#include "scene/water_target.h"
 
 namespace sphgeo {
 

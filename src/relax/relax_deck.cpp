@@ -1,4 +1,4 @@
-#include "run/relax_deck.h"
+#include "relax/relax_deck.h"
 
 #include <algorithm>
 #include <cmath>

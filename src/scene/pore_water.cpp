@@ -1,4 +1,4 @@
-#include "relax/pore_water.h"
+#include "scene/pore_water.h"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@
 #include "core/text.h"
 #include "geometry/fill.h"
 #include "geometry/shapes.h"
-#include "relax/acceptance.h"
-#include "relax/smooth_fraction.h"
+#include "scene/acceptance.h"
+#include "scene/smooth_fraction.h"
 
 namespace sphgeo {
 namespace {

@@ -1,4 +1,4 @@
-#include "relax/smooth_fraction.h"
+#include "scene/smooth_fraction.h"
 
 #include <algorithm>
 #include <cmath>
