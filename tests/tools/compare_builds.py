@@ -27,7 +27,7 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "support"))
 from run_folder import results  # noqa: E402
 
-FOR_THE_TEST = ("--unverified", "--no-frames", "--lively")
+FOR_THE_TEST = ("--unverified", "--no-frames", "--lively", "--at-rest")
 
 
 def cases(words):
