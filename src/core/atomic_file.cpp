@@ -162,7 +162,10 @@ void write_file_atomically(const std::string& path, std::string_view text) {
   file.commit();
 }
 
-std::string read_file(const std::string& path, std::uint64_t limit) {
+namespace {
+
+// Reads a file until it ends or more than `limit` bytes are there.
+std::string read_up_to(const std::string& path, std::uint64_t limit) {
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) throw_io_error(path, "cannot open the file", errno);
   std::string text;
@@ -177,7 +180,20 @@ std::string read_file(const std::string& path, std::uint64_t limit) {
   }
   ::close(descriptor);
   if (error != 0) throw_io_error(path, "cannot read the file", error);
+  return text;
+}
+
+}  // namespace
+
+std::string read_file(const std::string& path, std::uint64_t limit) {
+  std::string text = read_up_to(path, limit);
   if (text.size() > limit) throw IoError(path, fmt::format("larger than {} bytes", limit));
+  return text;
+}
+
+std::string read_beginning(const std::string& path, std::size_t count) {
+  std::string text = read_up_to(path, count);
+  text.resize(std::min(text.size(), count));
   return text;
 }
 

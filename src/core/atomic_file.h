@@ -55,4 +55,7 @@ void write_file_atomically(const std::string& path, std::string_view text);
 /// The whole file. Throws IoError, also when it is larger than `limit` bytes.
 std::string read_file(const std::string& path, std::uint64_t limit = std::uint64_t{1} << 30);
 
+/// Its first bytes, at most `count`. Throws IoError.
+std::string read_beginning(const std::string& path, std::size_t count);
+
 }  // namespace sphgeo

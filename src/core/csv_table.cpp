@@ -25,8 +25,15 @@ std::string_view trim(std::string_view s) {
 }
 
 /// A finite number, NaN for "no value", nothing for other text. Independent of the locale.
-std::optional<double> to_number(std::string_view s) {
+std::optional<double> to_number(std::string_view s, bool decimal_comma = false) {
   if (s.empty() || s == "nan" || s == "NaN") return std::numeric_limits<double>::quiet_NaN();
+  std::string with_point;
+  if (const auto comma = s.find(','); decimal_comma && comma != std::string_view::npos) {
+    if (s.find('.') != std::string_view::npos) return {};
+    with_point = s;
+    with_point[comma] = '.';
+    s = with_point;
+  }
   if (s.front() == '+') s.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), value);
@@ -34,12 +41,23 @@ std::optional<double> to_number(std::string_view s) {
   return value;
 }
 
-/// The cells of one line; throws when a quote is not closed or followed by other text.
-std::vector<std::string> split(std::string_view line, const std::string& place) {
+bool is_blank(char c) { return c == ' ' || c == '\t'; }
+
+/// Where the cell that begins at `at` ends: at the separator, or at the end of the line.
+std::size_t end_of_cell(std::string_view line, std::size_t at, char separator) {
+  if (separator != ' ') return std::min(line.find(separator, at), line.size());
+  while (at < line.size() && !is_blank(line[at])) ++at;
+  return at;
+}
+
+/// The cells of one line; throws when a quote is not closed or followed by other text. The
+/// separator ' ' stands for any run of blanks and tabs.
+std::vector<std::string> split(std::string_view line, char separator, const std::string& place) {
   std::vector<std::string> cells;
   std::size_t at = 0;
   for (;;) {
-    while (at < line.size() && (line[at] == ' ' || line[at] == '\t')) ++at;
+    while (at < line.size() && is_blank(line[at]) && line[at] != separator) ++at;
+    while (separator == ' ' && at < line.size() && is_blank(line[at])) ++at;
     if (at < line.size() && line[at] == '"') {
       std::string cell;
       for (++at;; ++at) {
@@ -48,15 +66,15 @@ std::vector<std::string> split(std::string_view line, const std::string& place) 
         else if (line[at] == '"') break;
         cell += line[at];
       }
-      const std::size_t comma = std::min(line.find(',', ++at), line.size());
-      if (!trim(line.substr(at, comma - at)).empty())
+      const std::size_t end = end_of_cell(line, ++at, separator);
+      if (!trim(line.substr(at, end - at)).empty())
         throw TableError(place + ": text after a closing quote");
       cells.push_back(std::move(cell));
-      at = comma;
+      at = end;
     } else {
-      const std::size_t comma = std::min(line.find(',', at), line.size());
-      cells.emplace_back(trim(line.substr(at, comma - at)));
-      at = comma;
+      const std::size_t end = end_of_cell(line, at, separator);
+      cells.emplace_back(trim(line.substr(at, end - at)));
+      at = end;
     }
     if (at >= line.size()) return cells;
     ++at;
@@ -65,46 +83,139 @@ std::vector<std::string> split(std::string_view line, const std::string& place) 
   }
 }
 
-/// "p [Pa]" -> "p"
-std::string_view without_unit(std::string_view heading) {
-  const auto bracket = heading.find(" [");
-  return bracket == std::string_view::npos ? heading : heading.substr(0, bracket);
+/// The headings of a row separated by blanks: "t [s] x [mm]" are two, a unit belongs to its name.
+std::vector<std::string> join_units(std::vector<std::string> cells) {
+  std::vector<std::string> joined;
+  for (std::string& cell : cells) {
+    const bool unit = !joined.empty() && (cell.front() == '[' || cell.front() == '(');
+    const bool open = !joined.empty() && joined.back().find('[') != std::string::npos &&
+                      joined.back().find(']') == std::string::npos;
+    if (unit || open) joined.back() += " " + cell;
+    else joined.push_back(std::move(cell));
+  }
+  return joined;
+}
+
+bool all_numbers(const std::vector<std::string>& cells, bool decimal_comma) {
+  return std::all_of(cells.begin(), cells.end(), [&](const std::string& c) {
+    return !c.empty() && to_number(c, decimal_comma).has_value();
+  });
+}
+
+/// Whether the line holds the character outside of quotes.
+bool holds(std::string_view line, char wanted) {
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    if (c == wanted && !quoted) return true;
+  }
+  return false;
+}
+
+/// What separates the cells, by the first row and the one after it. A comma separates unless all
+/// numbers of the row have it as their decimal sign.
+char separator_of(std::string_view first, std::string_view second, const std::string& place) {
+  if (holds(first, ';')) return ';';
+  for (const char blank : {'\t', ' '}) {
+    if (!holds(first, blank)) continue;
+    if (!holds(first, ',')) {
+      // One heading of several words, or several headings: the numbers below tell.
+      if (blank == '\t' || all_numbers(split(first, ' ', place), false)) return blank;
+      if (holds(second, ',') && !holds(second, ' ')) return ',';
+      if (second.find('"') != std::string_view::npos) return ',';
+      const auto below = split(second, ' ', place);
+      return below.size() > 1 && all_numbers(below, true) ? ' ' : ',';
+    }
+    const auto cells = split(first, blank, place);
+    if (cells.size() > 1 && all_numbers(cells, true) &&
+        !all_numbers(split(first, ',', place), false))
+      return blank;
+  }
+  return ',';
+}
+
+bool is_comment(std::string_view line) {
+  return line.starts_with('#') || line.starts_with('%') || line.starts_with("//");
+}
+
+/// The lines of a text with their numbers, without empty ones.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : text_(text) {}
+
+  /// The next line without blanks at its ends; false at the end of the text.
+  bool next(std::string_view& line) {
+    while (at_ < text_.size()) {
+      const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
+      line = trim(text_.substr(at_, end - at_));
+      at_ = end + (text_.substr(end, 2) == "\r\n" ? 2 : 1);
+      ++number_;
+      if (!line.empty()) return true;
+    }
+    return false;
+  }
+  int number() const { return number_; }
+
+ private:
+  std::string_view text_;
+  std::size_t at_ = 0;
+  int number_ = 0;
+};
+
+void check_names(const std::vector<std::string>& names, const std::string& place) {
+  std::set<std::string_view> seen;
+  for (const std::string& name : names) {
+    if (name.empty()) throw TableError(place + ": a column has no name");
+    if (!seen.insert(name).second)
+      throw TableError(fmt::format("{}: two columns are called '{}'", place, name));
+  }
+}
+
+void check_encoding(std::string_view& text, const std::string& path) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a spreadsheet's byte order mark
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw TableError(path + ":1: the table is in UTF-16; save it as UTF-8");
 }
 
 }  // namespace
 
+Heading split_heading(std::string_view heading) {
+  const auto open = heading.find_last_of("[(");
+  if (open == std::string_view::npos || open == 0) return {heading, {}};
+  if (heading.back() != (heading[open] == '[' ? ']' : ')')) return {heading, {}};
+  return {trim(heading.substr(0, open)), trim(heading.substr(open + 1, heading.size() - open - 2))};
+}
+
 CsvTable parse_csv_table(std::string_view text, const std::string& path, std::size_t max_cells) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a spreadsheet's byte order mark
+  check_encoding(text, path);
   CsvTable table;
   table.path_ = path;
-  int line_number = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    const std::string_view line = trim(text.substr(at, end - at));
-    at = end + 1;
-    ++line_number;
-    if (line.empty()) continue;
-    if (line.front() == '#') {
-      table.comments_.emplace_back(trim(line.substr(1)));
+  Lines lines(text);
+  char separator = 0;
+  for (std::string_view line; lines.next(line);) {
+    if (is_comment(line)) {
+      table.comments_.emplace_back(trim(line.substr(line.front() == '/' ? 2 : 1)));
       continue;
     }
-    const std::string place = fmt::format("{}:{}", path, line_number);
-    std::vector<std::string> cells = split(line, place);
+    const std::string place = fmt::format("{}:{}", path, lines.number());
     if (table.names_.empty()) {
-      const bool headless = std::all_of(cells.begin(), cells.end(), [](const std::string& c) {
-        return !c.empty() && to_number(c).has_value();
-      });
-      table.cells_.resize(cells.size());
-      if (!headless) {
-        std::set<std::string_view> seen;
-        for (const std::string& name : cells) {
-          if (name.empty()) throw TableError(place + ": a column has no name");
-          if (!seen.insert(name).second)
-            throw TableError(fmt::format("{}: two columns are called '{}'", place, name));
-        }
+      Lines ahead = lines;
+      std::string_view second;
+      while (ahead.next(second) && is_comment(second)) second = {};
+      separator = separator_of(line, second, place);
+      table.decimal_comma_ = separator != ',';
+    }
+    std::vector<std::string> cells = split(line, separator, place);
+    if (table.names_.empty()) {
+      if (!all_numbers(cells, table.decimal_comma_)) {
+        if (separator == ' ') cells = join_units(std::move(cells));
+        check_names(cells, place);
+        table.cells_.resize(cells.size());
         table.names_ = std::move(cells);
+        table.header_line_ = lines.number();
         continue;
       }
+      table.cells_.resize(cells.size());
       for (std::size_t i = 1; i <= cells.size(); ++i) table.names_.push_back(std::to_string(i));
     }
     if (cells.size() != table.names_.size())
@@ -113,7 +224,7 @@ CsvTable parse_csv_table(std::string_view text, const std::string& path, std::si
     if ((table.lines_.size() + 1) * cells.size() > max_cells)
       throw TableError(fmt::format("{}: more than {} cells", place, max_cells));
     for (std::size_t c = 0; c < cells.size(); ++c) table.cells_[c].push_back(std::move(cells[c]));
-    table.lines_.push_back(line_number);
+    table.lines_.push_back(lines.number());
   }
   if (table.names_.empty()) throw TableError(path + ": the table has no row of column names");
   return table;
@@ -124,15 +235,22 @@ CsvTable read_csv_table(const std::string& path) {
 }
 
 bool CsvTable::has(std::string_view name) const {
-  return std::any_of(names_.begin(), names_.end(),
-                     [&](const std::string& n) { return n == name || without_unit(n) == name; });
+  return std::any_of(names_.begin(), names_.end(), [&](const std::string& n) {
+    return n == name || split_heading(n).name == name;
+  });
 }
+
+std::string CsvTable::place(std::size_t row) const {
+  return fmt::format("{}:{}", path_, lines_.at(row));
+}
+
+std::string CsvTable::header_place() const { return fmt::format("{}:{}", path_, header_line_); }
 
 std::size_t CsvTable::index(std::string_view name) const {
   for (std::size_t c = 0; c < names_.size(); ++c)
     if (names_[c] == name) return c;
   for (std::size_t c = 0; c < names_.size(); ++c)
-    if (without_unit(names_[c]) == name) return c;
+    if (split_heading(names_[c]).name == name) return c;
   throw TableError(
       fmt::format("{}: no column '{}' (columns: {})", path_, name, fmt::join(names_, ", ")));
 }
@@ -146,12 +264,21 @@ std::vector<double> CsvTable::numbers(std::string_view name) const {
   std::vector<double> values;
   values.reserve(cells.size());
   for (std::size_t r = 0; r < cells.size(); ++r) {
-    const std::optional<double> value = to_number(cells[r]);
+    const std::optional<double> value = to_number(cells[r], decimal_comma_);
     if (!value)
-      throw TableError(fmt::format("{}:{}: column '{}': '{}' is not a finite number", path_,
-                                   lines_[r], name, cells[r]));
+      throw TableError(
+          fmt::format("{}: column '{}': '{}' is not a finite number", place(r), name, cells[r]));
     values.push_back(*value);
   }
+  return values;
+}
+
+std::vector<double> CsvTable::all_numbers(std::string_view name) const {
+  std::vector<double> values = numbers(name);
+  for (std::size_t r = 0; r < values.size(); ++r)
+    if (std::isnan(values[r]))
+      throw TableError(fmt::format("{}: column '{}': the cell is {}", place(r), name,
+                                   text(name)[r].empty() ? "empty" : "not a number"));
   return values;
 }
 
@@ -162,9 +289,11 @@ CsvTable CsvTable::where(std::string_view name, std::string_view value) const {
   out.path_ = path_;
   out.comments_ = comments_;
   out.names_ = names_;
+  out.header_line_ = header_line_;
+  out.decimal_comma_ = decimal_comma_;
   out.cells_.resize(cells_.size());
   for (std::size_t r = 0; r < rows(); ++r) {
-    const std::optional<double> key = number ? to_number(keys[r]) : std::nullopt;
+    const std::optional<double> key = number ? to_number(keys[r], decimal_comma_) : std::nullopt;
     if (keys[r] != value && !(key && *key == *number)) continue;
     for (std::size_t c = 0; c < cells_.size(); ++c) out.cells_[c].push_back(cells_[c][r]);
     out.lines_.push_back(lines_[r]);

@@ -17,16 +17,29 @@ class TableError : public Error {
   explicit TableError(const std::string& what) : Error(ExitCode::usage, what) {}
 };
 
-/// A CSV table: `#` comment lines, one row of column names, rows of cells. Cells are separated by
-/// commas and may be quoted; an empty cell and `nan` mean "no value" (NaN). When the first row
-/// holds numbers only, there are no names and the columns are called "1", "2", ...
+/// The heading of a column, "p [Pa]" or "p (Pa)": its name and the text of its unit, "" without.
+struct Heading {
+  std::string_view name, unit;
+};
+Heading split_heading(std::string_view heading);
+
+/// A table of cells: comment lines (`#`, `%` or `//`), one row of column names, rows of cells.
+/// Cells are separated by semicolons, tabs, commas or blanks, by what the first row shows, and may
+/// be quoted; where no comma separates them, numbers may have a decimal comma. Lines end in LF, CR
+/// LF or CR. An empty cell and `nan` mean "no value" (NaN). When the first row holds numbers only,
+/// there are no names and the columns are called "1", "2", ...
 class CsvTable {
  public:
   /// All column names, as written (a unit in brackets included).
   const std::vector<std::string>& names() const { return names_; }
   /// The comment lines without their `#`.
   const std::vector<std::string>& comments() const { return comments_; }
+  /// Whether the table has a row of column names.
+  bool named() const { return header_line_ > 0; }
   std::size_t rows() const { return lines_.size(); }
+  /// "file:line" of a row, and of the row of column names.
+  std::string place(std::size_t row) const;
+  std::string header_place() const;
   const std::string& path() const { return path_; }
 
   /// Whether there is such a column; "p" finds "p" and "p [Pa]".
@@ -34,6 +47,10 @@ class CsvTable {
   /// The numbers of a column, NaN for empty cells. Throws TableError when there is no such column
   /// (it lists those there are) or when a cell is not a number (with its line).
   std::vector<double> numbers(std::string_view name) const;
+  /// The same without "no value": an empty cell is an error too, with its line.
+  std::vector<double> all_numbers(std::string_view name) const;
+  /// The heading of a column as written. Throws TableError when there is no such column.
+  const std::string& heading(std::string_view name) const { return names_[index(name)]; }
   /// The cells of a column as text. Throws TableError when there is no such column.
   const std::vector<std::string>& text(std::string_view name) const;
   /// The rows whose cell in the column is this text, or this number.
@@ -49,6 +66,8 @@ class CsvTable {
   std::vector<std::string> names_;
   std::vector<std::vector<std::string>> cells_;  ///< by column
   std::vector<int> lines_;                       ///< the line of each row
+  int header_line_ = 0;                          ///< of the column names; 0: there are none
+  bool decimal_comma_ = false;
 };
 
 /// Parses the text of a table of at most 4096 columns; `path` is for the messages. Throws

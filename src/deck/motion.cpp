@@ -1,11 +1,15 @@
 #include "deck/motion.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 #include "core/csv_table.h"
 #include "core/direction.h"
+#include "core/text.h"
+#include "deck/table_columns.h"
 
 namespace sphgeo {
 namespace {
@@ -40,7 +44,8 @@ Schema<Motion> Motion::schema() {
       .keep_y();
   s.optional("center", &Motion::center, unit::length, "a point on the axis of the rotation");
   s.optional("table", &Motion::table, unit::none,
-             "CSV file with a column t and any of x, y, z, angle (SI), added to the formulas");
+             "table with a column t and any of x, y, z, angle, added to the formulas; SI, or units "
+             "in the headings: x [mm]");
   s.optional("waves", &Motion::waves, unit::none,
              "waves by a piston, from the start of the motion on; added to the formulas");
   s.optional("from", &Motion::from, unit::time, "at rest before this time");
@@ -53,20 +58,40 @@ Schema<Motion> Motion::schema() {
       c.error("until", "the motion ends before it begins", "until must be later than from");
     if (!m.table) return;
     try {
-      const CsvTable rows = read_csv_table(m.table->path);
-      m.times_ = rows.numbers("t");
-      if (m.times_.size() < 2 ||
-          !std::is_sorted(m.times_.begin(), m.times_.end(), std::less_equal<>()))
-        return c.error("table", "the times of the table must rise",
-                       "at least two rows, each later than the one before");
-      const char* names[] = {"x", "y", "z", "angle"};
-      for (std::size_t k = 0; k < 4; ++k)
-        if (rows.has(names[k])) m.columns_[k] = rows.numbers(names[k]);
+      m.read_table(c.dimension());
     } catch (const std::exception& e) {
-      c.error("table", e.what(), "a CSV file with a header row t,x,y,z,angle");
+      c.error("table", e.what(),
+              "columns t and any of x, y, z, angle, with units in brackets where they are not SI: "
+              "t [ms], x [mm], angle [deg]");
     }
   });
   return s;
+}
+
+void Motion::read_table(int dimension) {
+  const CsvTable rows = read_csv_table(table->path);
+  check_columns(rows, {"t", "time", "x", "y", "z", "angle"});
+  times_ = si_column(rows, rows.has("time") ? "time" : "t", unit::time);
+  if (times_.size() < 2) throw TableError(table->path + ": a motion needs at least two rows");
+  for (std::size_t k = 1; k < times_.size(); ++k)
+    if (!(times_[k] > times_[k - 1]))
+      throw TableError(rows.place(k) + ": the times must rise from row to row");
+  if (times_.front() > from)
+    throw TableError(fmt::format(
+        "{}: the table begins at t = {} s, and where the wall is before is not known; add a row "
+        "for t = 0, subtract {} s from all times, or let the motion begin there (from: {})",
+        rows.place(0), exact(times_.front()), exact(times_.front()), exact(times_.front())));
+  const char* names[] = {"x", "y", "z", "angle"};
+  bool moves = false;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (!rows.has(names[k])) continue;
+    columns_[k] = si_column(rows, names[k], k < 3 ? unit::length : unit::angle);
+    moves = true;
+    if (dimension == 2 && k == 1 &&
+        std::any_of(columns_[k].begin(), columns_[k].end(), [](double y) { return y != 0; }))
+      throw TableError(rows.header_place() + ": a 2D scene moves in x and z, not in y");
+  }
+  if (!moves) throw TableError(rows.header_place() + ": no column moves anything");
 }
 
 double Motion::clamp(double t) const { return std::max(from, until ? std::min(t, *until) : t); }

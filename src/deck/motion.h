@@ -17,11 +17,10 @@ struct Motion {
   Expression angle{0.0};                   ///< rotation angle, rad
   Vec3 axis = Vec3(0, 1, 0);               ///< axis of the rotation; y turns the x-z plane
   Vec3 center = Vec3::Zero();              ///< a point on the axis, m
-  std::optional<FilePath>
-      table;  ///< CSV with columns t and any of x, y, z, angle; added to the formulas
-  std::optional<Waves> waves;   ///< of a wave maker; added to the formulas
-  double from = 0.0;            ///< at rest before, s
-  std::optional<double> until;  ///< and after, s
+  std::optional<FilePath> table;  ///< columns t and any of x, y, z, angle; added to the formulas
+  std::optional<Waves> waves;     ///< of a wave maker; added to the formulas
+  double from = 0.0;              ///< at rest before, s
+  std::optional<double> until;    ///< and after, s
 
   static Schema<Motion> schema();
 
@@ -57,6 +56,8 @@ struct Motion {
   double max_speed(const Vec3& reference, double end) const;
 
  private:
+  // Reads the table. Throws IoError or TableError with file and line.
+  void read_table(int dimension);
   Pose pose(double t) const;
   Vec3 placed(const Vec3& reference, const Pose& p) const;
   Vec3 turned(const Vec3& reference, const Pose& p) const;

@@ -116,14 +116,19 @@ struct HalfSpace final : SceneShape {
   Vec3 unit_ = Vec3::UnitZ();
 };
 
+struct TerrainGrid;
+
 /// Solid below a bilinear surface through a grid of heights, within the grid's rectangle.
 struct HeightField final : SceneShape {
   std::optional<FilePath> file;
-  std::vector<double> heights;  ///< row by row, or read from `file`
-  int columns = 0;              ///< heights in a row (along x); 0: all of them
-  Vec3 origin = Vec3::Zero();   ///< of the first height of the first row; z is added to the heights
-  double spacing = 0.0;
-  std::optional<double> spacing_y;
+  std::string format = "auto";    ///< of the file, see read_terrain
+  std::optional<double> no_data;  ///< the height in the file that means there is none
+  std::string holes = "refuse";   ///< or "fill"
+  std::vector<double> heights;    ///< row by row, instead of a file
+  int columns = 0;                ///< heights in a row (along x); 0: all of them
+  Vec3 origin = Vec3::Zero();  ///< of the first height of the first row; added to a file's places
+  Vec3 map_origin = Vec3::Zero();  ///< what of the file's coordinates becomes zero
+  std::optional<double> spacing, spacing_y;
   double scale = 1.0;            ///< factor on the heights
   std::optional<double> bottom;  ///< underside, z; none: unbounded
   double section = 0.0;          ///< 2D: the y of the section
@@ -132,6 +137,7 @@ struct HeightField final : SceneShape {
   void prepare();
   double signed_distance(const Vec3& at) const override;
   Aabb box() const override;
+  void inspect(CheckContext& context) const override;
   /// Surface height at (x, y), the grid's edge value outside.
   double height(double x, double y) const;
 
@@ -140,10 +146,14 @@ struct HeightField final : SceneShape {
   double patch_distance_squared(const Vec3& p, std::int32_t cell,
                                 double best) const;  // infinite when more than `best`
 
+  void place(const TerrainGrid& grid, const std::string& where);
+
   std::vector<double> grid_;  // metres, row by row
   int nx_ = 0, ny_ = 0;
+  double x0_ = 0, y0_ = 0;  // of the first height
+  Index filled_ = 0;        // holes
   Vec3 lo_ = Vec3::Zero(), hi_ = Vec3::Zero();
-  double dy_ = 0.0;
+  double dx_ = 0.0, dy_ = 0.0;
   BoxTree tree_;
 };
 
@@ -169,6 +179,7 @@ struct Stl final : SceneShape {
  private:
   SurfaceDistance surface_;
   MeshHealth health_;
+  std::vector<std::string> remarks_;  // about the file
   std::vector<Vec2> section_;
   BoxTree section_tree_;
 };

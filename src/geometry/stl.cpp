@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -69,7 +71,9 @@ Schema<Stl> Stl::schema() {
 }
 
 void Stl::prepare() {
-  Triangles mesh = read_stl(file.path);
+  StlSurface surface = read_stl(file.path);
+  Triangles mesh = std::move(surface.mesh);
+  remarks_ = std::move(surface.remarks);
   const Mat3 turn = rotate == 0.0
                         ? Mat3(Mat3::Identity())
                         : Eigen::AngleAxisd(rotate, direction_of(axis)).toRotationMatrix();
@@ -85,11 +89,18 @@ void Stl::prepare() {
   if (!(reach <= longest && size >= shortest))
     throw IoError(file.path, "the surface is " + exact(size) + " m across and reaches " +
                                  exact(reach) + " m from the origin: is 'scale' right?");
+  if (reach > 1000 * size)
+    remarks_.push_back(
+        fmt::format("it is {:.4g} m across and lies {:.6g} m from the origin: "
+                    "coordinates of a map? `translate` moves it",
+                    size, reach));
   const Index dropped = weld(mesh, weld_tolerance.value_or(1e-6 * size));
   if (mesh.faces.empty())
     throw IoError(file.path, "no triangle is left after welding: is weld_tolerance too large?");
+  const Index duplicates = drop_duplicates(mesh);
   health_ = repair_orientation(mesh);
   health_.degenerate_faces = dropped;
+  health_.duplicate_faces = duplicates;
   section_.clear();
   section_tree_ = {};
   if (flat) {
@@ -140,6 +151,10 @@ void Stl::inspect(CheckContext& context) const {
             std::to_string(at.y()) + ", " + std::to_string(at.z()) + "] m",
         "close the holes, or raise weld_tolerance if corners that should coincide are apart");
   }
+  for (const std::string& remark : remarks_) context.warning("file", "the STL file: " + remark);
+  if (health_.duplicate_faces > 0)
+    context.warning("file", count(health_.duplicate_faces, "face is", "faces are") +
+                                " there twice; one of each was left out");
   if (health_.non_manifold_edges > 0)
     context.warning("file",
                     count(health_.non_manifold_edges, "edge has", "edges have") +

@@ -3,15 +3,16 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <string_view>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "core/words.h"
 
 namespace sphgeo {
 
@@ -19,7 +20,9 @@ namespace {
 
 constexpr std::size_t header_bytes = 80, face_bytes = 50;
 constexpr std::size_t max_faces = 10'000'000;
-constexpr std::uint64_t max_bytes = std::uint64_t{4} << 30;
+constexpr std::uint64_t max_text_bytes = std::uint64_t{2} << 30,
+                        max_bytes =
+                            max_text_bytes;  // of ten million faces: 500 MB, or more in text
 
 std::uint32_t read_u32(const char* at) {
   std::uint32_t v = 0;
@@ -48,16 +51,36 @@ void add_face(Triangles& mesh, const std::array<Vec3, 3>& corners, const std::st
   mesh.faces.push_back({first, first + 1, first + 2});
 }
 
-Triangles read_binary(const std::string& bytes, const std::string& path) {
-  const std::size_t count = read_u32(bytes.data() + header_bytes);
-  const std::size_t expected = header_bytes + 4 + face_bytes * count;
-  if (bytes.size() < expected)
+// How many triangles a binary file has: what its header counts, but for writers that do not know
+// it beforehand and leave 0 or 2^32 - 1 there.
+std::size_t faces_of(std::uint64_t size, std::uint32_t stated, const std::string& path,
+                     std::vector<std::string>* remarks = nullptr) {
+  const std::uint64_t room = (size - header_bytes - 4) / face_bytes;
+  std::uint64_t count = stated;
+  if ((stated == 0 || stated == 0xffffffffU) && room > 0) {
+    count = room;
+    if (remarks)
+      remarks->push_back("its header counts " + std::to_string(stated) +
+                         " triangles; by its size it has " + std::to_string(count));
+  }
+  if (count > max_faces)
+    throw IoError(path, std::to_string(count) + " triangles are more than " +
+                            std::to_string(max_faces) + ": use a coarser surface");
+  const std::uint64_t expected = header_bytes + 4 + face_bytes * count;
+  if (size < expected)
     throw IoError(path, "the STL file is truncated: its header states " + std::to_string(count) +
                             " triangles (" + std::to_string(expected) + " bytes) but it has " +
-                            std::to_string(bytes.size()) + " bytes");
+                            std::to_string(size) + " bytes");
+  if (size > expected && remarks)
+    remarks->push_back(std::to_string(size - expected) +
+                       " bytes behind its last triangle were left out");
+  return static_cast<std::size_t>(count);
+}
+
+Triangles read_binary(const std::string& bytes, std::size_t count, const std::string& path) {
   Triangles mesh;
-  mesh.points.reserve(3 * std::min(count, max_faces));
-  mesh.faces.reserve(std::min(count, max_faces));
+  mesh.points.reserve(3 * count);
+  mesh.faces.reserve(count);
   for (std::size_t f = 0; f < count; ++f) {
     const char* corner = bytes.data() + header_bytes + 4 + face_bytes * f + 12;  // after the normal
     std::array<Vec3, 3> c;
@@ -70,49 +93,14 @@ Triangles read_binary(const std::string& bytes, const std::string& path) {
   return mesh;
 }
 
-/// Splits a text into words and remembers the line for messages.
-class Words {
- public:
-  Words(std::string_view text, const std::string& path) : text_(text), path_(path) {}
-
-  std::string_view next() {
-    while (at_ < text_.size() && is_space(text_[at_])) line_ += text_[at_++] == '\n';
-    const std::size_t first = at_;
-    while (at_ < text_.size() && !is_space(text_[at_])) ++at_;
-    return text_.substr(first, at_ - first);
-  }
-  void skip_line() {
-    while (at_ < text_.size() && text_[at_] != '\n') ++at_;
-  }
-  double number() {
-    std::string_view word = next();
-    if (word.starts_with('+')) word.remove_prefix(1);
-    double v = 0.0;
-    const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), v);
-    if (status != std::errc() || end != word.data() + word.size())
-      fail("expected a number, found '" + shortened(word, 60) + "'");
-    return v;
-  }
-  [[noreturn]] void fail(const std::string& what) const {
-    throw IoError(path_, "line " + std::to_string(line_) + ": " + what);
-  }
-
- private:
-  static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-
-  std::string_view text_;
-  std::string path_;
-  std::size_t at_ = 0;
-  int line_ = 1;
-};
-
 /// Only `vertex` and `endfacet` matter; the name after `solid` may hold any words.
 Triangles read_text(const std::string& text, const std::string& path) {
   Triangles mesh;
   Words words(text, path);
   std::array<Vec3, 3> corners;
   int have = 0;
-  for (std::string_view word = words.next(); !word.empty(); word = words.next()) {
+  for (std::string_view next = words.next(); !next.empty(); next = words.next()) {
+    const std::string word = lower_case(next);
     if (word == "solid" || word == "endsolid") {
       words.skip_line();
     } else if (word == "vertex") {
@@ -129,22 +117,37 @@ Triangles read_text(const std::string& text, const std::string& path) {
   return mesh;
 }
 
+// Whether the file is text: binary ones may begin with "solid" too, but their count or their first
+// numbers hold bytes that no text has.
+bool is_text(std::string_view begin) {
+  for (const char c : begin)
+    if (static_cast<unsigned char>(c) < ' ' && !(c >= '\t' && c <= '\r')) return false;
+  const std::string lower = lower_case(begin);
+  return lower.find("solid") < header_bytes && lower.find("facet") != std::string::npos;
+}
+
 }  // namespace
 
-Triangles read_stl(const std::string& path) {
-  const std::string bytes = read_file(path, max_bytes);
-  // Some binary files begin with "solid" too, so the size decides first, then the first words.
-  const bool has_header = bytes.size() >= header_bytes + 4;
-  const bool size_fits =
-      has_header &&
-      bytes.size() ==
-          header_bytes + 4 + face_bytes * std::size_t{read_u32(bytes.data() + header_bytes)};
-  const bool text =
-      !size_fits && bytes.find("solid") < header_bytes && bytes.find("facet") != std::string::npos;
-  if (!text && !has_header) throw IoError(path, "not an STL file");
-  Triangles mesh = text ? read_text(bytes, path) : read_binary(bytes, path);
-  if (mesh.faces.empty()) throw IoError(path, "the STL file has no triangles");
-  return mesh;
+StlSurface read_stl(const std::string& path) {
+  const std::string begin = read_beginning(path, 4096);
+  std::error_code unknown;
+  const std::uint64_t size = std::filesystem::file_size(path, unknown);
+  StlSurface surface;
+  if (is_text(begin)) {
+    if (!unknown && size > max_text_bytes)
+      throw IoError(path, std::to_string(size >> 20) +
+                              " MB of text are too heavy: save it as binary STL, or use a coarser "
+                              "surface");
+    surface.mesh = read_text(read_file(path, max_text_bytes), path);
+  } else {
+    if (begin.size() < header_bytes + 4) throw IoError(path, "not an STL file");
+    const std::uint32_t stated = read_u32(begin.data() + header_bytes);
+    if (!unknown) faces_of(size, stated, path);
+    const std::string bytes = read_file(path, max_bytes);
+    surface.mesh = read_binary(bytes, faces_of(bytes.size(), stated, path, &surface.remarks), path);
+  }
+  if (surface.mesh.faces.empty()) throw IoError(path, "the STL file has no triangles");
+  return surface;
 }
 
 void write_stl(const std::string& path, const Triangles& mesh) {

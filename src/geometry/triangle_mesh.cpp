@@ -90,6 +90,26 @@ Index weld(Triangles& mesh, double tolerance) {
   return dropped;
 }
 
+Index drop_duplicates(Triangles& mesh) {
+  using Face = std::array<std::int32_t, 3>;
+  std::vector<std::pair<Face, std::size_t>> order;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    Face key = mesh.faces[f];
+    std::rotate(key.begin(), std::min_element(key.begin(), key.end()), key.end());
+    order.emplace_back(key, f);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<char> repeated(mesh.faces.size(), 0);
+  for (std::size_t k = 1; k < order.size(); ++k)
+    repeated[order[k].second] = order[k].first == order[k - 1].first;
+  std::size_t kept = 0;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    if (!repeated[f]) mesh.faces[kept++] = mesh.faces[f];
+  const auto dropped = static_cast<Index>(mesh.faces.size() - kept);
+  mesh.faces.resize(kept);
+  return dropped;
+}
+
 MeshHealth repair_orientation(Triangles& mesh) {
   MeshHealth health;
   struct Use {

@@ -23,6 +23,7 @@ struct MeshHealth {
   Index non_manifold_edges = 0;  ///< edges with more than two faces
   Index flipped_faces = 0;       ///< faces turned against the majority of their connected part
   Index degenerate_faces = 0;    ///< faces without area or with a repeated corner; dropped
+  Index duplicate_faces = 0;     ///< faces that repeat another one; dropped
   bool inside_out = false;       ///< the whole surface encloses a negative volume
   Vec3 open_at = Vec3::Zero();   ///< the centre of one open edge, to locate it
 };
@@ -30,6 +31,9 @@ struct MeshHealth {
 /// Makes corners of nearer than `tolerance` (m) one corner and drops faces that collapse; returns
 /// the number of dropped faces. Tolerance 0 joins equal corners only.
 Index weld(Triangles& mesh, double tolerance);
+
+/// Drops faces with the corners of an earlier one in the same order around; returns their number.
+Index drop_duplicates(Triangles& mesh);
 
 /// Examines the edges and turns flipped faces so that each connected part is consistent; a surface
 /// that is inside out as a whole is turned as well.

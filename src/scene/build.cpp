@@ -12,6 +12,11 @@
 #include "geometry/fill.h"
 #include "geometry/relaxation.h"
 #include "materials/water.h"
+#include "scene/extent.h"
+#include "scene/interface.h"
+#include "scene/join_walls.h"
+#include "scene/parameters.h"
+#include "scene/pore_water.h"
 #include "scene/interface.h"
 #include "scene/join_walls.h"
 #include "scene/parameters.h"
@@ -301,6 +306,8 @@ template <int Dim>
 Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling) {
   Scene<Dim> scene;
   scene.model = &model;
+  check_extent(model, found);
+  if (found.has_errors()) throw DeckError(found);
   // What follows from the filling is added below; then nobody changes it any more.
   const auto parameters = std::make_shared<Parameters>(compile_parameters(model));
   scene.world = std::make_unique<World<Dim>>(parameters);

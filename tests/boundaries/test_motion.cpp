@@ -107,10 +107,42 @@ TEST_SUITE("boundaries") {
   TEST_CASE("tables whose times do not rise, or that are not there, are refused") {
     CHECK_THROWS_AS(Table("t,x\n0,0\n0,1\n").motion(), DeckError);
     CHECK_THROWS_AS(Table("t,x\n0,0\n").motion(), DeckError);
-    CHECK_THROWS_AS(Table("time,x\n0,0\n1,1\n").motion(), DeckError);
+    CHECK_THROWS_AS(Table("when,x\n0,0\n1,1\n").motion(), DeckError);
+    CHECK_THROWS_AS(Table("t,X\n0,0\n1,1\n").motion(), DeckError);  // an unknown column
+    CHECK_THROWS_AS(Table("t,roll\n0,0\n1,1\n").motion(), DeckError);
+    CHECK_THROWS_AS(Table("t,x\n0,0\n1,\n2,1\n").motion(), DeckError);  // an empty cell
+    CHECK_THROWS_AS(Table("t\n0\n1\n").motion(), DeckError);            // nothing moves
+    CHECK_THROWS_AS(Table("t,x [s]\n0,0\n1,1\n").motion(), DeckError);  // not a length
     CHECK_THROWS_AS(motion("{table: no_such_file.csv}"), DeckError);
     CHECK_THROWS_AS(motion("{angle: t, axis: [0, 0, 0]}"), DeckError);
     CHECK_THROWS_AS(motion("{displacement: [t, 0, 0], from: 2, until: 1}"), DeckError);
+  }
+
+  TEST_CASE("a table is read in its units, with the separators of its program") {
+    for (const char* text : {"t [ms],x [mm],angle [deg]\n0,0,0\n500,250,90\n1000,500,180\n",
+                             "time [s];x [m];angle [rad]\n0;0;0\n0,5;0,25;1,5707963267948966\n"
+                             "1;0,5;3,141592653589793\n",
+                             "t x [cm] angle [deg]\n0 0 0\n0.5 25 90\n1 50 180\n"}) {
+      CAPTURE(text);
+      const Motion m = Table(text).motion();
+      CHECK(near(m.position({1, 0, 0}, 0.5), {0.25, 0, -1}, 1e-12));
+      CHECK(near(m.position({1, 0, 0}, 1), {-0.5, 0, 0}, 1e-12));
+    }
+  }
+
+  TEST_CASE("a table that begins late needs a motion that begins no earlier") {
+    const Table late("t,x\n1,0.5\n2,1.5\n");
+    CHECK_THROWS_AS(late.motion(), DeckError);
+    const Motion m = late.motion(", from: 1");
+    CHECK(near(m.position(Vec3::Zero(), 1.5), {1, 0, 0}, 1e-12));
+    const Table early("t,x\n-1,-1\n1,1\n");
+    CHECK(near(early.motion().position(Vec3::Zero(), 0), Vec3::Zero(), 1e-12));
+  }
+
+  TEST_CASE("a table that moves a 2D scene along y is refused") {
+    const Table t("t,x,y\n0,0,0\n1,1,1\n"), still("t,x,y\n0,0,0\n1,1,0\n");
+    CHECK_NOTHROW(::motion("{table: gate.csv}", 2, still.folder.path()));
+    CHECK_THROWS_AS(::motion("{table: gate.csv}", 2, t.folder.path()), DeckError);
   }
 
   TEST_CASE("a boundary rests before and after its motion") {

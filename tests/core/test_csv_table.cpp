@@ -77,6 +77,55 @@ TEST_SUITE("core") {
           std::string::npos);
   }
 
+  TEST_CASE("cells are separated by commas, semicolons, tabs or blanks") {
+    for (const char* text : {"t [s],x [mm]\n0,1.5\n2,3\n", "t [s];x [mm]\n0;1.5\n2;3\n",
+                             "t [s]\tx [mm]\n0\t1.5\n2\t3\n", "t [s] x [mm]\n0   1.5\n2 3\n",
+                             "t [s]  x [mm]\n  0\t1.5\n 2 3\n", "t [s];x [mm]\r0;1,5\r2;3\r",
+                             "t [s]\tx [mm]\n0\t1,5\n2\t3\n", "t [s] x [mm]\n0 1,5\n2,0 3\n"}) {
+      CAPTURE(text);
+      const CsvTable t = parse_csv_table(text, "t.csv");
+      CHECK(t.names() == std::vector<std::string>{"t [s]", "x [mm]"});
+      CHECK(t.numbers("t") == std::vector<double>{0, 2});
+      CHECK(t.numbers("x") == std::vector<double>{1.5, 3});
+      CHECK(t.named());
+    }
+    CHECK(parse_csv_table("0,5 1,5\n2 3\n", "t.csv").numbers("1") == std::vector<double>{0.5, 2});
+    CHECK(parse_csv_table("1, 2\n3, 4\n", "t.csv").numbers("2") == std::vector<double>{2, 4});
+    CHECK(parse_csv_table("wave height\n0.5\n", "t.csv").names().size() == 1);
+    CHECK(parse_csv_table("wave height,p\n0.5,1\n", "t.csv").names().size() == 2);
+    CHECK(failure("a;p\n1;1.000,5\n", "p") ==
+          "t.csv:2: column 'p': '1.000,5' is not a finite number");
+    CHECK(failure("a;p\n1;1,000,000\n", "p") ==
+          "t.csv:2: column 'p': '1,000,000' is not a finite number");
+  }
+
+  TEST_CASE("comments, lines and encodings of other programs") {
+    const CsvTable t = parse_csv_table("% one\n// two\n# three\na,p\n\n1,2\n% four\n3,4", "t.csv");
+    CHECK(t.comments() == std::vector<std::string>{"one", "two", "three", "four"});
+    CHECK(t.numbers("p") == std::vector<double>{2, 4});
+    CHECK(t.header_place() == "t.csv:4");
+    CHECK(t.place(1) == "t.csv:8");
+    CHECK(parse_csv_table("a,p\r1,2\r\r3,4\r", "t.csv").place(1) == "t.csv:4");
+    CHECK(failure(std::string("\xFF\xFE"
+                              "a\0",
+                              4)) == "t.csv:1: the table is in UTF-16; save it as UTF-8");
+  }
+
+  TEST_CASE("a heading has a name and a unit") {
+    CHECK(split_heading("p [Pa]").unit == "Pa");
+    CHECK(split_heading("p[Pa]").name == "p");
+    CHECK(split_heading("angle (deg)").unit == "deg");
+    CHECK(split_heading("z(0)").name == "z");
+    CHECK(split_heading("[Pa]").name == "[Pa]");
+    CHECK(split_heading("p Pa]").unit.empty());
+  }
+
+  TEST_CASE("where every cell must hold a number, an empty one is an error") {
+    const CsvTable t = parse_csv_table("a,p\n1,2\n3,\n4,nan\n", "t.csv");
+    CHECK(t.all_numbers("a").size() == 3);
+    CHECK_THROWS_WITH_AS(t.all_numbers("p"), "t.csv:3: column 'p': the cell is empty", TableError);
+  }
+
   TEST_CASE("a missing table is an input-output failure") {
     CHECK_THROWS_WITH_AS(read_csv_table("/nowhere/t.csv"),
                          "/nowhere/t.csv: cannot open the file: No such file or directory",

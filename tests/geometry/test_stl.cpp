@@ -77,7 +77,7 @@ TEST_SUITE("geometry") {
       const TemporaryFile text("text.stl"), binary("binary.stl");
       write_stl(binary.path, mesh);
       write_text_stl(text.path, mesh);
-      const Triangles a = read_stl(text.path), b = read_stl(binary.path);
+      const Triangles a = read_stl(text.path).mesh, b = read_stl(binary.path).mesh;
       REQUIRE(a.points.size() == b.points.size());
       CHECK(a.faces == b.faces);
       bool same = true;
@@ -229,6 +229,55 @@ TEST_SUITE("geometry") {
     std::ofstream(file.path) << "hello";
     CHECK_THROWS_WITH(read_stl(file.path), doctest::Contains("not an STL"));
     CHECK(read_shape("{type: stl, file: " + file.path + "}", 3).messages().find("shape.file") !=
+          std::string::npos);
+  }
+
+  TEST_CASE("stl: capitals, ends of lines and headers of other programs") {
+    const TemporaryFile text("foreign_text.stl"), binary("foreign_binary.stl");
+    write_text_stl(text.path, cube_mesh());
+    const Triangles cube = read_stl(text.path).mesh;
+    std::ifstream in(text.path);
+    std::string lower((std::istreambuf_iterator<char>(in)), {});
+    const auto written = [&](std::string bytes, auto change) {
+      for (char& c : bytes) c = change(c);
+      std::ofstream(text.path, std::ios::binary | std::ios::trunc) << bytes;
+      return read_stl(text.path);
+    };
+    CHECK(written(lower, [](char c) {
+            return c >= 'a' && c <= 'z' ? char(c - 32) : c;
+          }).mesh.faces == cube.faces);
+    CHECK(written(lower, [](char c) { return c == '\n' ? '\r' : c; }).mesh.points == cube.points);
+
+    write_stl(binary.path, cube);
+    const auto with = [&](const char* header, std::uint32_t count, const std::string& tail) {
+      std::fstream f(binary.path, std::ios::binary | std::ios::in | std::ios::out);
+      f.write(header, 5);
+      f.seekp(80);
+      f.write(reinterpret_cast<const char*>(&count), 4);
+      f.seekp(0, std::ios::end);
+      f << tail;
+    };
+    with("other", 0, "");
+    StlSurface s = read_stl(binary.path);
+    CHECK(s.mesh.faces == cube.faces);
+    REQUIRE(s.remarks.size() == 1);
+    CHECK(s.remarks[0] == "its header counts 0 triangles; by its size it has 12");
+    with("other", 0xffffffffU, "");
+    CHECK(read_stl(binary.path).mesh.faces == cube.faces);
+    with("solid", 12, "made by facet tools");
+    s = read_stl(binary.path);
+    CHECK(s.mesh.faces == cube.faces);
+    CHECK(s.remarks.at(0) == "19 bytes behind its last triangle were left out");
+    with("solid", 123456789, "");
+    CHECK_THROWS_WITH(read_stl(binary.path),
+                      doctest::Contains("123456789 triangles are more than"));
+  }
+
+  TEST_CASE("stl: faces that are there twice, and coordinates of a map, are said") {
+    Triangles cube = cube_mesh();
+    cube.faces.push_back({cube.faces[3][1], cube.faces[3][2], cube.faces[3][0]});
+    CHECK(report(cube) == "shape.file: 1 face is there twice; one of each was left out\n");
+    CHECK(report(cube_mesh(), ", translate: [556440, 5394932, 0]").find("coordinates of a map?") !=
           std::string::npos);
   }
 }
