@@ -127,10 +127,15 @@ std::optional<Forecast> forecast_of(const Model& model, World<Dim>& world, Plan<
   const ForecastBasis basis(model, world, plan, sound, wishes, walls, base);
   std::optional<MeasuredCosts> costs;
   if (options.calibrate && basis.advection_steps() > 0) {
-    costs = measure_costs<Dim>(model, world, plan, wishes, walls, started, basis.advection_steps());
+    try {
+      costs =
+          measure_costs<Dim>(model, world, plan, wishes, walls, started, basis.advection_steps());
+    } catch (const UnstableError& e) {
+      throw Error(ExitCode::usage, fmt::format("the scene fails in its first steps: {}", e.what()));
+    }
     if (!costs)
-      std::cerr
-          << "warning: the scene becomes unstable in its first steps; the time is not forecast\n";
+      std::cerr << "warning: a coarse copy of the scene becomes unstable in its first steps; the "
+                   "time is not forecast\n";
   }
   return basis(costs);
 }

@@ -180,6 +180,9 @@ struct Model {
       if (m->name == material_name) return m.get();
     return nullptr;
   }
+  /// The liquid of the scene: the first water that a body is made of, else the first water at all;
+  /// nullptr when there is none.
+  const MaterialSpec* liquid() const;
   double frame_interval() const { return output.frames.every.value_or(end_time / 20); }
   double run_interval() const { return output.run_every.value_or(end_time / 200); }
   double probe_interval(const ProbeSpec& p) const { return p.every.value_or(end_time / 500); }

@@ -79,6 +79,22 @@ void check_references(const Model& m, CheckContext& c) {
   }
 }
 
+/// All water of a scene is one liquid: its density, viscosity and speed of sound are those of one
+/// material. A second one that nothing is made of does no harm.
+void check_one_liquid(const Model& m, CheckContext& c) {
+  const MaterialSpec* liquid = m.liquid();
+  for (std::size_t k = 0; k < m.materials.size(); ++k) {
+    const MaterialSpec& material = *m.materials[k];
+    if (&material == liquid || material.phase() != "water") continue;
+    if (std::any_of(m.bodies.begin(), m.bodies.end(),
+                    [&](const Body& b) { return b.material == material.name; }))
+      c.error(fmt::format("materials[{}]", k),
+              fmt::format("'{}' is a second liquid beside '{}': a scene has one", material.name,
+                          liquid->name),
+              "give all water bodies one material", "E025");
+  }
+}
+
 void check_all(Model& m, CheckContext& c) {
   std::vector<Named> materials, sets, probes, results;
   const auto of_pointer = [](const auto& p) { return p->name; };
@@ -93,10 +109,22 @@ void check_all(Model& m, CheckContext& c) {
   check_names(probes, "probes", c);
   check_names(results, "expected results", c);
   check_references(m, c);
+  check_one_liquid(m, c);
   if (m.dimension == 2 && m.gravity.y() != 0.0) m.gravity.y() = 0.0;
 }
 
 }  // namespace
+
+const MaterialSpec* Model::liquid() const {
+  const MaterialSpec* first = nullptr;
+  for (const auto& m : materials) {
+    if (m->phase() != "water") continue;
+    if (!first) first = m.get();
+    for (const Body& b : bodies)
+      if (b.material == m->name) return m.get();
+  }
+  return first;
+}
 
 Schema<Model> Model::schema() {
   Schema<Model> s("deck", "A scene, its probes, and its expected results.");

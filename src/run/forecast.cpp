@@ -291,8 +291,12 @@ std::optional<MeasuredCosts> measure_costs(const Model& model, World<Dim>& world
   const double particles = fluid(counts_of(world));
   if (particles > calibrated_particles) {
     CoarseCopy<Dim> copy(model, calibrated_particles / 2);
-    auto costs = measure_costs<Dim>(*copy.scene.model, *copy.scene.world, *copy.plan, wishes,
-                                    boundary_mesh(*copy.scene.model), 0, steps);
+    std::optional<MeasuredCosts> costs;
+    try {
+      costs = measure_costs<Dim>(*copy.scene.model, *copy.scene.world, *copy.plan, wishes,
+                                 boundary_mesh(*copy.scene.model), 0, steps);
+    } catch (const UnstableError&) {  // of the copy, whose walls may be too thin
+    }
     if (!costs) return costs;
     const double larger = ratio(particles, fluid(counts_of(*copy.scene.world)));
     return MeasuredCosts{start,
@@ -300,24 +304,20 @@ std::optional<MeasuredCosts> measure_costs(const Model& model, World<Dim>& world
                          costs->observation * larger,
                          costs->frame * larger};
   }
-  try {
-    MeasuredCosts costs;
-    costs.start = start;
-    plan.run(Stage::reinitialize);
-    const auto step = calibrate<Dim>(world, plan, 1.0, steps);
-    if (!step) return std::nullopt;
-    costs.step = *step;
-    auto begin = clock_type::now();
-    plan.run(Stage::observe);
-    sample_probes(model, world);
-    costs.observation = seconds_since(begin);
-    begin = clock_type::now();
-    run_output(model, world, wishes, walls, 1e9);
-    costs.frame = seconds_since(begin);
-    return costs;
-  } catch (const UnstableError&) {
-    return std::nullopt;
-  }
+  MeasuredCosts costs;
+  costs.start = start;
+  plan.run(Stage::reinitialize);
+  const auto step = calibrate<Dim>(world, plan, 1.0, steps);
+  if (!step) return std::nullopt;
+  costs.step = *step;
+  auto begin = clock_type::now();
+  plan.run(Stage::observe);
+  sample_probes(model, world);
+  costs.observation = seconds_since(begin);
+  begin = clock_type::now();
+  run_output(model, world, wishes, walls, 1e9);
+  costs.frame = seconds_since(begin);
+  return costs;
 }
 
 template <int Dim>

@@ -17,10 +17,6 @@
 #include "scene/join_walls.h"
 #include "scene/parameters.h"
 #include "scene/pore_water.h"
-#include "scene/interface.h"
-#include "scene/join_walls.h"
-#include "scene/parameters.h"
-#include "scene/pore_water.h"
 #include "scene/soil.h"
 #include "scene/solid.h"
 #include "scene/wall_corners.h"
@@ -87,12 +83,6 @@ BodyPoints fill_body(const Body& body, const Model& model) {
 
 namespace {
 
-const Water* find_water(const Model& model) {
-  for (const auto& m : model.materials)
-    if (const auto* w = dynamic_cast<const Water*>(m.get())) return w;
-  return nullptr;
-}
-
 /// Pressure at t = 0, Pa.
 double initial_pressure(const Body& body, const Model& model, double density, const Vec3& at) {
   if (body.pressure.word == "zero") return 0;
@@ -107,7 +97,7 @@ double initial_pressure(const Body& body, const Model& model, double density, co
 
 template <int Dim>
 void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics& found) {
-  const Water* water = find_water(model);
+  const auto* water = dynamic_cast<const Water*>(model.liquid());
   if (!water || !has_water(model)) return;
   ParticleSet<Dim>& set =
       scene.world->add_set("water", "water", model.resolution, water_smoothing_length(model), true);
@@ -288,6 +278,25 @@ Aabb water_box(const Model& model) {
   return box;
 }
 
+/// Water compressed by its own weight: g H / c0^2 of its density at the bottom.
+void check_compression(const Model& model, const SoundSpeed& sound, Diagnostics& found) {
+  const Aabb box = water_box(model);
+  const double g = model.gravity.norm(), c = sound.value;
+  if (!(g > 0) || box.empty() || !box.lo.allFinite() || !box.hi.allFinite()) return;
+  const double depth = (box.hi - box.lo).cwiseProduct(model.gravity.cwiseAbs() / g).sum();
+  const double compression = g * depth / (c * c);
+  constexpr double noticeable = 0.03, senseless = 0.2;
+  if (!(compression > noticeable)) return;
+  const std::string message = fmt::format(
+      "with a speed of sound of {:.3g} m/s water {:.3g} m deep is {:.2g} % denser at its bottom", c,
+      depth, 100 * compression);
+  const std::string help = fmt::format("1 % takes {:.3g} m/s: max_speed of the water is a tenth",
+                                       std::sqrt(g * depth / 0.01));
+  if (compression > senseless)
+    found.error("E148", model.place_of("materials"), "materials", message, help);
+  else found.warning("W137", model.place_of("materials"), "materials", message, help);
+}
+
 Aabb scene_box(const Model& model) {
   Aabb box = water_box(model);
   const Placement placement{model.resolution, support_radius(model), model.dimension};
@@ -318,6 +327,7 @@ Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling) 
                 "give max_speed or sound_speed of the water");
     scene.sound.value = 1;
   }
+  if (has_water(model)) check_compression(model, scene.sound, found);
   parameters->water.sound_speed = scene.sound.value;
   add_water(scene, model, filling, found);
   parameters->soil = compile_soil(model, add_soil(scene, model, filling, found));

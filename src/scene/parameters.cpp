@@ -54,12 +54,10 @@ NumericsParameters compile_numerics(const Numerics& n) {
 
 WaterParameters compile_water(const Model& model) {
   WaterParameters p;
-  for (const auto& m : model.materials)
-    if (const auto* water = dynamic_cast<const Water*>(m.get())) {
-      p.density = water->density;
-      p.viscosity = water->viscosity;
-      break;
-    }
+  if (const auto* water = dynamic_cast<const Water*>(model.liquid())) {
+    p.density = water->density;
+    p.viscosity = water->viscosity;
+  }
   p.limiter = model.numerics.limiter;
   p.follows_porosity = has_soil(model) && model.numerics.pore_water != "constant_volume";
   return p;

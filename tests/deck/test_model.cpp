@@ -174,4 +174,26 @@ TEST_SUITE("deck") {
     CHECK(std::is_sorted(names.begin(), names.end()));
     CHECK_THROWS_AS((Register<Shape, Block>{"sample_block"}), std::logic_error);
   }
+
+  TEST_CASE("a second liquid is refused where something is made of it") {
+    const auto found = [](const std::string& body_of) {
+      Diagnostics out;
+      try {
+        out = read_deck_text(
+                  "dimension: 2\nresolution: 0.1\nend_time: 1\nmaterials:\n"
+                  "  - {name: water, type: water}\n"
+                  "  - {name: oil, type: water, density: 800}\nbodies:\n"
+                  "  - {name: a, material: water, shape: {type: box, min: [0, 0, 0], "
+                  "max: [1, 1, 1]}}\n"
+                  "  - {name: b, material: " +
+                  body_of + ", shape: {type: box, min: [1, 0, 0], max: [2, 1, 1]}}\n")
+                  .warnings;
+      } catch (const DeckError& e) {
+        return e.diagnostics.items().at(0).id + " " + e.diagnostics.items().at(0).path;
+      }
+      return std::string();
+    };
+    CHECK(found("oil") == "E025 materials[1]");
+    CHECK(found("water").empty());
+  }
 }

@@ -203,6 +203,30 @@ TEST_SUITE("probes") {
     CHECK(*cube.sample(0)[0] == doctest::Approx(1.5 * 0.8 * 0.5));
   }
 
+  TEST_CASE("the flux of water in soil is that of the water alone") {
+    Rig<2> rig(R"(
+dimension: 2
+resolution: 0.025
+end_time: 1
+materials:
+  - {name: water, type: water, sound_speed: 50}
+  - {name: sand, type: soil, density: 2600, volume_fraction: 0.6, youngs_modulus: 1e7,
+     friction_angle: 30 deg, skeleton: fixed, drag: none}
+bodies:
+  - {name: pool, material: water, velocity: [0.5, 0, 0], shape: {type: box, min: [0, 0, 0], max: [1.2, 0, 0.4]}}
+  - {name: plug, material: sand, shape: {type: box, min: [0.4, 0, 0], max: [0.8, 0, 0.4]}}
+relaxation: {steps: 200}
+probes:
+  - {name: before, type: flux, point: [0.2, 0, 0], normal: [1, 0, 0]}
+  - {name: inside, type: flux, point: [0.6, 0, 0], normal: [1, 0, 0]}
+)");
+    rig.plan_it();
+    rig.freeze();
+    CHECK(*rig.sample(0)[0] == doctest::Approx(0.5 * 0.4).epsilon(0.02));
+    CHECK(*rig.sample(1)[0] == doctest::Approx(0.5 * 0.4 * 0.4).epsilon(0.03));
+    CHECK(*rig.sample(1)[1] == doctest::Approx(1000 * *rig.sample(1)[0]).epsilon(0.01));
+  }
+
   TEST_CASE("amount counts particles, mass and volume") {
     Rig<2> rig(pool(2, "  - {name: a, type: amount}\n"));
     rig.plan_it();
