@@ -183,6 +183,8 @@ Heading split_heading(std::string_view heading) {
   const auto open = heading.find_last_of("[(");
   if (open == std::string_view::npos || open == 0) return {heading, {}};
   if (heading.back() != (heading[open] == '[' ? ']' : ')')) return {heading, {}};
+  // "sqrt(g)" is a name.
+  if (heading[open] == '(' && !is_blank(heading[open - 1])) return {heading, {}};
   return {trim(heading.substr(0, open)), trim(heading.substr(open + 1, heading.size() - open - 2))};
 }
 

@@ -1,7 +1,7 @@
 #include "deck/model.h"
 
-#include "core/csv_table.h"
 #include "core/error.h"
+#include "deck/reference_curve.h"
 
 namespace sphgeo {
 
@@ -316,11 +316,7 @@ namespace {
 /// An unusable table is reported before the run, not after it.
 void check_reference(const Expect& e, CheckContext& c) {
   try {
-    const CsvTable table = read_csv_table(e.reference_csv->path);
-    if (table.names().size() < 2 && !(e.x && e.y))
-      return c.error("reference_csv", "a curve needs two columns, and the table has one");
-    table.numbers(e.x.value_or(table.names().front()));
-    table.numbers(e.y ? *e.y : table.names()[1]);
+    read_reference(e, std::nullopt);
   } catch (const Error& error) {
     c.error("reference_csv", error.what());
   }

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/csv_table.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "deck/model.h"
+#include "deck/reference_curve.h"
 #include "output/reduction.h"
 #include "output/series.h"
 
@@ -38,19 +38,14 @@ void measure_number(const Expect& e, const Samples& samples, ExpectResult& resul
   else result.note = fmt::format("the {} samples hold no '{}'", samples.t.size(), e.reduce);
 }
 
-void measure_curve(const Expect& e, Samples samples, ExpectResult& result) {
+void measure_curve(const Expect& e, Samples samples, const std::string& unit,
+                   ExpectResult& result) {
   if (!e.reference_csv) {
     result.note = "a curve needs a reference_csv";
     return;
   }
-  const CsvTable table = read_csv_table(e.reference_csv->path);
-  if (table.names().size() < 2 && !(e.x && e.y))
-    throw TableError(table.path() + ": a curve needs two columns");
-  std::vector<double> x = table.numbers(e.x.value_or(table.names().front()));
-  std::vector<double> y = table.numbers(e.y ? *e.y : table.names()[1]);
+  auto [x, y] = read_reference(e, unit);
   for (double& v : samples.y) v = (v + e.shift) / e.scale;
-  for (double& v : x) v = v * e.x_scale + e.x_shift;
-  for (double& v : y) v *= e.y_scale;
   for (double& v : x)  // a point outside of the window is ignored, also for the range
     if ((e.from && v < *e.from) || (e.to && v > *e.to)) v = std::nan("");
   const std::optional<CurveDifference> d = compare_curve(samples, x, y);
@@ -107,11 +102,15 @@ ExpectResult evaluate(const Expect& e, const SeriesLookup& series) {
         fmt::format("probe '{}' has no column '{}'", source.series->name(), source.column);
     return result;
   }
-  const auto values =
-      source.column.empty() ? source.series->column(0) : source.series->column(source.column);
+  const std::vector<Column>& columns = source.series->columns();
+  const auto column = source.column.empty()
+                          ? columns.begin()
+                          : std::find_if(columns.begin(), columns.end(),
+                                         [&](const Column& c) { return c.name == source.column; });
+  const auto values = source.series->column(static_cast<std::size_t>(column - columns.begin()));
   const Samples samples = cut(source.series->times(), values, e.from, e.to);
   try {
-    if (e.reduce == "curve") measure_curve(e, samples, result);
+    if (e.reduce == "curve") measure_curve(e, samples, column->unit, result);
     else measure_number(e, samples, result);
   } catch (const Error& error) {  // an unreadable reference must not discard the results of the run
     result.note = error.what();

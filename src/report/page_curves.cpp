@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/text.h"
+#include "deck/reference_curve.h"
 #include "report/chart.h"
 #include "report/markup.h"
 #include "report/page_parts.h"
@@ -74,15 +75,12 @@ std::pair<const TimeSeries*, const NamedColumn*> find_column(const RunRecord& ru
 
 /// The reference of a curve, as it is compared. Empty when it cannot be read: the table of claims
 /// says why.
-std::optional<ChartCurve> reference_curve(const Expect& e) {
+std::optional<ChartCurve> reference_curve(const Expect& e, const std::string& unit) {
   try {
-    const CsvTable table = read_csv_table(e.reference_csv->path);
-    if (table.names().size() < 2 && !(e.x && e.y)) return {};
+    ReferenceCurve reference = read_reference(e, unit);
     ChartCurve curve;
-    curve.x = table.numbers(e.x.value_or(table.names().front()));
-    curve.y = table.numbers(e.y ? *e.y : table.names()[1]);
-    for (double& v : curve.x) v = v * e.x_scale + e.x_shift;
-    for (double& v : curve.y) v *= e.y_scale;
+    curve.x = std::move(reference.x);
+    curve.y = std::move(reference.y);
     curve.name = "reference";
     curve.line = false;
     curve.markers = curve.neutral = true;
@@ -102,9 +100,11 @@ void add_claims(Runs runs, Charts& charts, std::set<std::string>& shown) {
       chart.title = e.name;
       chart.x = time_axis(runs);
       const bool raw = e.scale == 1 && e.shift == 0;
+      std::string unit;
       for (const RunRecord& run : runs) {
         const auto [series, column] = find_column(run, e.probe);
         if (!column) continue;
+        unit = column->unit;
         std::string name = column->name;
         std::replace(name.begin(), name.end(), '_', ' ');
         chart.y.title = raw ? name
@@ -121,7 +121,7 @@ void add_claims(Runs runs, Charts& charts, std::set<std::string>& shown) {
         chart.curves.push_back(std::move(curve));
       }
       if (chart.curves.empty()) continue;
-      if (auto reference = reference_curve(e)) chart.curves.push_back(std::move(*reference));
+      if (auto reference = reference_curve(e, unit)) chart.curves.push_back(std::move(*reference));
       shown.insert("claim " + e.name);
       std::string window;
       if (e.from || e.to)

@@ -115,7 +115,7 @@ TEST_SUITE("core") {
     CHECK(split_heading("p [Pa]").unit == "Pa");
     CHECK(split_heading("p[Pa]").name == "p");
     CHECK(split_heading("angle (deg)").unit == "deg");
-    CHECK(split_heading("z(0)").name == "z");
+    CHECK(split_heading("t sqrt(g)").name == "t sqrt(g)");
     CHECK(split_heading("[Pa]").name == "[Pa]");
     CHECK(split_heading("p Pa]").unit.empty());
   }

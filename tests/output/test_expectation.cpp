@@ -186,6 +186,28 @@ TEST_SUITE("output") {
       CHECK(evaluate(c, lookup).note.find("no column 'nothing'") != std::string::npos);
       CHECK_FALSE(evaluate(c, lookup).pass);
     }
+    SUBCASE("units of a reference are those of its headings, unless the deck scales it") {
+      const test::TemporaryFolder folder;
+      Expect c;
+      c.probe = "gauge.left.level";  // m
+      c.reduce = "curve";
+      c.to = 2;
+      c.tolerance = 1e-9;
+      c.reference_csv = FilePath{folder / "ref.csv"};
+      const auto compared = [&](const std::string& text) {
+        write_file_atomically(folder / "ref.csv", text);
+        return evaluate(c, lookup);
+      };
+      const double exact = compared("t,z\n0,0\n1,0.5\n2,1.1\n").value.value();
+      CHECK(compared("t [ms];z [cm]\n0;0\n1000;50\n2000;110\n").value.value() ==
+            doctest::Approx(exact));
+      CHECK(compared("t [s],z [Pa]\n0,0\n1,1\n").note.find("'Pa' is not a length") !=
+            std::string::npos);
+      CHECK(compared("t [s],z [cmm]\n0,0\n1,1\n").note.find("there is no unit 'cmm'") !=
+            std::string::npos);
+      c.y_scale = 0.05;
+      CHECK(compared("t,z [cm]\n0,0\n1,10\n2,22\n").value.value() == doctest::Approx(exact));
+    }
     SUBCASE("what cannot be measured fails and says why") {
       Expect b = e;
       b.probe = "other";
