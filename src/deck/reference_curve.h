@@ -16,7 +16,8 @@ struct ReferenceCurve {
 
 /// Reads the reference_csv of a claim. Units in the headings are converted, to seconds and to
 /// `unit` of the probe's column where it is known, unless the deck scales the column itself
-/// (x_scale, y_scale, scale). Throws IoError, or TableError with file and line for a table that cannot be used.
+/// (x_scale, y_scale, scale). Throws IoError, or TableError with file and line for a table that
+/// cannot be used.
 ReferenceCurve read_reference(const Expect& claim, std::optional<std::string_view> unit);
 
 }  // namespace sphgeo

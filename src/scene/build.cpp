@@ -285,7 +285,7 @@ void check_compression(const Model& model, const SoundSpeed& sound, Diagnostics&
   if (!(g > 0) || box.empty() || !box.lo.allFinite() || !box.hi.allFinite()) return;
   const double depth = (box.hi - box.lo).cwiseProduct(model.gravity.cwiseAbs() / g).sum();
   const double compression = g * depth / (c * c);
-  constexpr double noticeable = 0.03, senseless = 0.2;
+  constexpr double noticeable = 0.05, senseless = 0.2;
   if (!(compression > noticeable)) return;
   const std::string message = fmt::format(
       "with a speed of sound of {:.3g} m/s water {:.3g} m deep is {:.2g} % denser at its bottom", c,

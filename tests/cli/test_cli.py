@@ -117,6 +117,10 @@ boundaries: [{name: ground, type: wall, shape: {type: box, min: [-1, -1, -0.5], 
         self.refused(2, "did you mean 'resolution'?", "check", "deck.yaml", "--set", "resolutoin=1")
         self.assertFalse((self.here / "out").exists())
 
+    def test_a_scene_that_fails_at_once_is_not_correct(self):
+        self.write("fast.yaml", DECK.replace("material: water,", "material: water, velocity: [50, 0, 0],"))
+        self.refused(2, "the scene fails in its first steps", "check", "fast.yaml")
+
     def test_nothing_drives_the_terminal(self):
         bad = "no\x1b[31m\x9b2J\u202e\udcff.yaml"   # ESC, C1, right-to-left override, a byte that is no UTF-8
         shown = "no?[31m?2J??.yaml"

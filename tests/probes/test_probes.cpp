@@ -213,7 +213,8 @@ materials:
   - {name: sand, type: soil, density: 2600, volume_fraction: 0.6, youngs_modulus: 1e7,
      friction_angle: 30 deg, skeleton: fixed, drag: none}
 bodies:
-  - {name: pool, material: water, velocity: [0.5, 0, 0], shape: {type: box, min: [0, 0, 0], max: [1.2, 0, 0.4]}}
+  - {name: pool, material: water, velocity: [0.5, 0, 0],
+     shape: {type: box, min: [0, 0, 0], max: [1.2, 0, 0.4]}}
   - {name: plug, material: sand, shape: {type: box, min: [0.4, 0, 0], max: [0.8, 0, 0.4]}}
 relaxation: {steps: 200}
 probes:
