@@ -10,6 +10,7 @@
 #include "deck/motion.h"
 #include "effects/effect.h"
 #include "particles/fields.h"
+#include "probes/probe.h"
 
 namespace sphgeo {
 namespace {
@@ -86,6 +87,21 @@ CatalogGroup types(const RegistryCore& registry, const std::string& heading,
   return g;
 }
 
+CatalogGroup probes() {
+  const RegistryCore& registry = Registry<ProbeSpec>::get();
+  CatalogGroup g = types(registry, "probes",
+                         "Measurements during a run: entries of `probes`. Their columns are those "
+                         "in 3D, after the time; in 2D amounts are per metre of depth, and vectors "
+                         "have no y.");
+  const Model defaults;
+  for (std::size_t k = 0; k < g.entries.size(); ++k) {
+    const std::shared_ptr<void> object = registry.entries()[k].create();
+    if (const auto* probe = dynamic_cast<const Probe*>(static_cast<ProbeSpec*>(object.get())))
+      g.entries[k].columns = probe->columns(defaults);
+  }
+  return g;
+}
+
 CatalogGroup effects() {
   CatalogGroup g{"effect",
                  "effects",
@@ -146,8 +162,7 @@ std::vector<CatalogGroup> catalog() {
           types(Registry<Shape>::get(), "shapes", "Regions of space, for bodies and walls."),
           types(Registry<BoundarySpec>::get(), "boundaries",
                 "Boundaries of the scene: entries of `boundaries`."),
-          types(Registry<ProbeSpec>::get(), "probes",
-                "Measurements during a run: entries of `probes`."),
+          probes(),
           effects(),
           fields_group()};
 }

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/column.h"
+
 namespace sphgeo {
 
 /// One key of a type or section.
@@ -23,6 +25,7 @@ struct CatalogEntry {
   std::vector<KeyFacts> keys;  ///< of sections and types
   /// Of effects and fields: "stage: force", "unit: Pa" ...
   std::vector<std::pair<std::string, std::string>> facts;
+  std::vector<Column> columns = {};  ///< of a probe in 3D, with the defaults of its keys
 };
 
 /// Entries of one kind, sorted as they are shown.

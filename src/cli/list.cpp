@@ -24,6 +24,9 @@ void print_entry(const CatalogGroup& group, const CatalogEntry& entry) {
                              k.changeable ? "; may change on resume" : "");
   for (const auto& [what, value] : entry.facts)
     std::cout << fmt::format("  {:<10} {}\n", what, value);
+  if (!entry.columns.empty()) std::cout << fmt::format("columns, in 3D:\n");
+  for (const Column& c : entry.columns)
+    std::cout << fmt::format("  {}\n      {}\n", c.heading(), c.sentence);
 }
 
 /// Text in a cell of a Markdown table.
@@ -41,6 +44,11 @@ void print_keys(const CatalogEntry& entry) {
                              : k.otherwise.empty() ? ""
                                                    : "`" + cell(k.otherwise) + "`",
                              cell(k.sentence), k.equation.empty() ? "" : " (" + k.equation + ")");
+  std::cout << fmt::format("\n");
+  if (entry.columns.empty()) return;
+  std::cout << fmt::format("| column | unit | what it is |\n|---|---|---|\n");
+  for (const Column& c : entry.columns)
+    std::cout << fmt::format("| `{}` | {} | {} |\n", c.name, c.unit, cell(c.sentence));
   std::cout << fmt::format("\n");
 }
 

@@ -195,6 +195,9 @@ boundaries: [{name: ground, type: wall, shape: {type: box, min: [-1, -1, -0.5], 
         for text in ("(Eq. 63)", "at least 0", "default 3", "one of single or double"):
             self.assertIn(text, self.accepted("show", "numerics").stdout)
         self.assertIn("required", self.accepted("show", "tank").stdout)
+        # A probe has its columns, with their units.
+        for text in ("columns, in 3D:", "  flow [m3/s]", "  mass_flow [kg/s]"):
+            self.assertIn(text, self.accepted("show", "flux").stdout)
         self.refused(2, "no type 'bxo'; did you mean 'box'?", "show", "bxo")
         self.refused(2, "'sphgeo list'", "show", "no_such_thing_at_all")
 
