@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -97,10 +98,17 @@ bool read_mapping(const Node& node, const std::vector<SchemaPart>& parts, const 
   for (const Entry* entry : unknown) {
     std::string near = nearest_name(entry->key, absent);
     if (near.empty()) near = nearest_name(entry->key, all);
-    reading.error("E012", entry->place, path,
-                  fmt::format("unknown key '{}'{}", entry->key, in_section(path)),
-                  near.empty() ? suggestion(entry->key, absent.empty() ? all : absent, "valid keys")
-                               : fmt::format("did you mean '{}'?", near));
+    // What stands behind a comma in {a: b, c} is a key: "1,5" or a sentence needs quotes.
+    const bool behind_comma = entry->value.kind == Node::Kind::null && near.empty() &&
+                              !entry->key.empty() &&
+                              (std::isdigit(static_cast<unsigned char>(entry->key.front())) != 0 ||
+                               entry->key.find(' ') != std::string::npos);
+    reading.error(
+        "E012", entry->place, path, fmt::format("unknown key '{}'{}", entry->key, in_section(path)),
+        behind_comma   ? "a comma in braces begins a new key: put text with a comma in quotes, and "
+                         "write numbers with a point"
+        : near.empty() ? suggestion(entry->key, absent.empty() ? all : absent, "valid keys")
+                       : fmt::format("did you mean '{}'?", near));
     meant.push_back(near);
     good = false;
   }

@@ -190,8 +190,11 @@ class Overrider {
         const Entry* name = item.find("name");
         if (name != nullptr && name->value.text == step.key) return &item;
       }
+      const bool number = step.key.find_first_not_of("0123456789") == std::string::npos;
       refuse(o, step, fmt::format("'{}' has no element named '{}'", so_far(o, k), step.key),
-             suggestion(step.key, names_in(node), "names"));
+             number ? fmt::format("an element by its number is written '{}[{}]'", so_far(o, k),
+                                  step.key)
+                    : suggestion(step.key, names_in(node), "names"));
       return nullptr;
     }
     if (node.kind == Node::Kind::null) node.kind = Node::Kind::map;

@@ -236,4 +236,20 @@ TEST_SUITE("deck") {
     }
     CHECK(keys > 35);
   }
+
+  TEST_CASE("a comma in braces and a number in a path are explained") {
+    const auto help_of = [](const std::string& text, const std::vector<std::string>& set) {
+      try {
+        read_deck_text(text, set);
+      } catch (const DeckError& e) {
+        return e.diagnostics.items().at(0).help;
+      }
+      return std::string();
+    };
+    const std::string deck =
+        "dimension: 2\nresolution: 0.1\nend_time: 1\nmaterials: [{name: water, type: water";
+    CHECK(help_of(deck + ", max_speed: 1,5}]\n", {}).find("begins a new key") != std::string::npos);
+    CHECK(help_of(deck + "}]\n", {"materials.0.density=900"}) ==
+          "an element by its number is written 'materials[0]'");
+  }
 }
