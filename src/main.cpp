@@ -150,6 +150,8 @@ int main(int argc, char** argv) {
   keep_standard_streams();
   // Whoever reads our output may go away; that must not end a run.
   std::signal(SIGPIPE, SIG_IGN);
+  // A limit on the size of files is an error of writing, as a full disk is.
+  std::signal(SIGXFSZ, SIG_IGN);
   CLI::App app{
       "soil, water, rock and structures with smoothed particle hydrodynamics, from a YAML deck",
       "sphgeo"};

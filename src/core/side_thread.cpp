@@ -1,11 +1,22 @@
 #include "core/side_thread.h"
 
+#include <time.h>
+
 #include <system_error>
 #include <utility>
 
 #include "core/parallel.h"
 
 namespace sphgeo {
+namespace {
+
+double processor_of_thread() {
+  timespec spent{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &spent);
+  return static_cast<double>(spent.tv_sec) + 1e-9 * static_cast<double>(spent.tv_nsec);
+}
+
+}  // namespace
 
 SideThread::~SideThread() {
   if (!thread_.joinable()) return;
@@ -71,10 +82,16 @@ void SideThread::serve() {
     {
       const std::lock_guard lock(mutex_);
       failure_ = failure;
+      processor_ = processor_of_thread();
       under_way_ = false;
     }
     changed_.notify_all();
   }
+}
+
+double SideThread::processor_seconds() const {
+  const std::lock_guard lock(mutex_);
+  return processor_;
 }
 
 void SideThread::rethrow() const {

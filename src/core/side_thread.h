@@ -30,6 +30,8 @@ class SideThread {
   /// Waits for the end of the task before, then begins this one; throws as check(). Where the
   /// system gives no thread the task runs at once.
   void begin(std::function<void()> task);
+  /// Processor time of the tasks that have ended, s.
+  double processor_seconds() const;
 
  private:
   void serve();
@@ -40,6 +42,7 @@ class SideThread {
   std::function<void()> task_;
   std::exception_ptr failure_;
   bool under_way_ = false, stop_ = false;
+  double processor_ = 0;  ///< s
   std::thread thread_;  ///< starts with the first task
 };
 

@@ -232,10 +232,14 @@ void LevelSetMesh<Dim>::sum_outside(Block& block) const {
   };
   if (std::none_of(block.nodes.begin(), block.nodes.end(), wanted)) return;
   // Shares of the cells around that lie outside: the surface cuts the cell of a node, and its
-  // distance tells by how much, without a jump.
+  // distance tells by how much, without a jump. The middle of a part that is cut off lies farther
+  // out than its node, so some of it counts as the next node's: then the sums do not depend on
+  // where the surface runs between the nodes.
+  const auto cut = [&](double distance) { return std::clamp(0.5 + distance / width_, 0.0, 1.0); };
   const auto reach = static_cast<Index>(std::ceil(kernel.support() / width_));
   const Around outside = around(block, reach, [&](const Node& n) {
-    return static_cast<float>(std::clamp(0.5 + n.distance / width_, 0.0, 1.0));
+    const double own = cut(n.distance), inner = cut(n.distance - width_);
+    return static_cast<float>(own * (1 + own) / 2 + inner * (1 - inner) / 2);
   });
   struct Term {
     Index offset;

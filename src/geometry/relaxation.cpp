@@ -176,20 +176,36 @@ class Relaxer {
     Vec<Dim>& p = at(r_, i);
     const auto known = missing_->surface().distance(p);
     if (!exactly && std::abs(known.gradient.norm() - 1) < plane_enough) {
-      if (known.value > level) p -= (known.value - level) * known.gradient.normalized();
-      depth = std::min(known.value, level);
-      return;
+      const Vec<Dim> moved = p - std::max(known.value - level, 0.0) * known.gradient.normalized();
+      // In a part thinner than a spacing the surface on the other side may be nearer then.
+      if (known.value <= level ||
+          missing_->surface().distance(moved).value < level + bounding_slack * dp_) {
+        p = moved;
+        depth = std::min(known.value, level);
+        return;
+      }
     }
     depth = std::min(depth, known.value + error);
     if (depth < (exactly ? level : level + bounding_slack * dp_)) return;
     depth = shape_.signed_distance(to_space<Dim>(p));
-    // Again where the first projection, along a straight normal, missed by a thousandth.
+    // Again where the first projection, along a straight normal, missed by a thousandth. On the
+    // ridge in the middle of a thin part, and beyond the band, the mesh has no direction: the shape
+    // is asked. In the middle of a part thinner than a spacing the particle stays.
     for (int k = 0; k < 3 && depth > level + 0.001 * dp_; ++k) {
+      const bool ask = exactly || !(known.gradient.norm() > 0.9);
       const Vec<Dim> normal =
-          exactly ? to_scene<Dim>(outward_normal(shape_, to_space<Dim>(p), 0.05 * dp_, Dim))
-                  : known.gradient.normalized();
-      p -= (depth - level) * normal;
-      depth = shape_.signed_distance(to_space<Dim>(p));
+          ask ? to_scene<Dim>(outward_normal(shape_, to_space<Dim>(p), 0.05 * dp_, Dim))
+              : Vec<Dim>(known.gradient.normalized());
+      // A shorter way where the whole one leads through to the other side.
+      double way = depth - level, there = depth;
+      Vec<Dim> moved = p;
+      for (int half = 0; half < 5 && !(there < depth); ++half, way *= 0.5) {
+        moved = p - way * normal;
+        there = shape_.signed_distance(to_space<Dim>(moved));
+      }
+      if (!(there < depth)) break;
+      p = moved;
+      depth = there;
     }
   }
 

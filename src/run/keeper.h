@@ -37,9 +37,10 @@ class Keeper {
   void keep(double wall_seconds);
 
   double wall_before() const { return before_.seconds; }  ///< s
-  /// Of this part of the run and those before, s.
+  /// Of this part of the run and those before, without the thread that writes files beside it, s.
   double processor_so_far() const {
-    return before_.processor + processor_seconds() - processor_start_;
+    return before_.processor + processor_seconds() - processor_start_ -
+           parts_.recorder.files().processor_seconds();
   }
   /// From the start of the last one until it was on the disk; what is still being written counts as
   /// the one before it, s.

@@ -176,6 +176,39 @@ TEST_SUITE("geometry") {
     CHECK(surface_offset(turned, *t, 0.05) < 0.1);
   }
 
+  TEST_CASE("relaxation: thin and pointed bodies keep their particles, inside and apart") {
+    constexpr double dp = 0.05;
+    const OneThread one;
+    const auto check_kept = [&](const std::string& yaml, int dim, double outside, double apart) {
+      CAPTURE(yaml);
+      CAPTURE(dim);
+      const ShapePtr s = shape_of(yaml, dim);
+      const RelaxedPositions r = relax_fill(*s, dp, dim);
+      REQUIRE_FALSE(r.at.empty());
+      double farthest = -1, nearest = 1;
+      for (std::size_t i = 0; i < r.at.size(); ++i) {
+        REQUIRE(r.at[i].allFinite());
+        farthest = std::max(farthest, s->signed_distance(r.at[i]));
+        for (std::size_t j = 0; j < i; ++j) nearest = std::min(nearest, (r.at[i] - r.at[j]).norm());
+      }
+      CHECK(farthest <= outside * dp);
+      CHECK(nearest >= apart * dp);
+    };
+    // Slivers, whose ridge lies less than half a spacing deep.
+    for (const char* points : {"[[0, 0, 0], [1, 0, 0.03], [0.5, 0, 0.05], [0.02, 0, 1]]",
+                               "[[0.408, 0, 0.352], [0.455, 0, 0.803], [0.453, 0, 0.959]]"})
+      check_kept(std::string("{type: polygon, y_min: 0, y_max: 0.3, points: ") + points + "}", 2,
+                 1e-6, 0.4);
+    for (const double spacings : {0.5, 1.0, 1.5, 2.0})
+      for (const double turned : {0.3, 0.785}) {
+        const std::string plate = fmt::format(
+            "{{type: transform, rotate: {}, of: {{type: box, min: [0.013, 0, 0.021], max: [0.5, "
+            "0.3, {}]}}}}",
+            turned, 0.021 + spacings * dp);
+        for (const int dim : {2, 3}) check_kept(plate, dim, 1e-6, 0.4);
+      }
+  }
+
   TEST_CASE("relaxation: the same bits for one and three threads") {
     const ShapePtr s = shape_of("{type: sphere, center: [0, 0, 0], radius: 1}", 2);
     RelaxationOptions o;
