@@ -43,7 +43,7 @@ class SideThread {
   std::exception_ptr failure_;
   bool under_way_ = false, stop_ = false;
   double processor_ = 0;  ///< s
-  std::thread thread_;  ///< starts with the first task
+  std::thread thread_;    ///< starts with the first task
 };
 
 }  // namespace sphgeo

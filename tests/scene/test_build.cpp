@@ -84,28 +84,6 @@ TEST_SUITE("scene") {
               .max_speed == doctest::Approx(7));
   }
 
-  TEST_CASE("heights are those along gravity, and inlets count") {
-    // Gravity along -x: the pool is 0.5 m high.
-    const std::string sideways = "gravity: [-9.81, 0, 0]\n";
-    CHECK(sound<2>("", sideways + pool).max_speed == doctest::Approx(2 * std::sqrt(9.81 * 0.5)));
-    const double s = std::sqrt(0.5);
-    CHECK(sound<2>("", "gravity: [" + std::to_string(-9.81 * s) + ", 0, " +
-                           std::to_string(-9.81 * s) + "]\n" + pool)
-              .max_speed == doctest::Approx(2 * std::sqrt(9.81 * 0.8 * s)).epsilon(1e-5));
-    const std::string jet =
-        "boundaries: [{name: jet, type: inlet, min: [0, 0, 0], max: [0, 0.2, 0.2], velocity: [7, "
-        "0, "
-        "0]}]\n";
-    CHECK(sound<2>("", "gravity: 0\n" + pool + jet).max_speed == doctest::Approx(7));
-    CHECK(sound<2>("", "gravity: 0\n" + pool + jet).because.find("'jet'") != std::string::npos);
-  }
-
-  TEST_CASE("water that its speed of sound lets be compressed is warned of, or refused") {
-    CHECK_FALSE(findings(pool + tank, ", sound_speed: 20").contains("W137"));
-    CHECK(findings(pool + tank, ", max_speed: 0.6").contains("W137"));  // 8 % denser at the bottom
-    CHECK(findings(pool + tank, ", max_speed: 0.1").contains("E148"));
-  }
-
   TEST_CASE("a scene in which nothing can move has no speed of sound to estimate") {
     CHECK(findings("gravity: 0\n" + pool) == Ids{"E112"});
     CHECK(findings("gravity: 0\n" + pool, ", max_speed: 1").empty());
