@@ -14,6 +14,7 @@
 #include "run/run_output.h"
 #include "run/thread_count.h"
 #include "run/wishes.h"
+#include "scene/extent.h"
 
 namespace sphgeo {
 namespace {
@@ -185,6 +186,9 @@ void refuse(const Model& model, double available) {
 }  // namespace
 
 void refuse_too_large(const Model& model) {
+  Diagnostics far = {};
+  check_extent(model, far);
+  if (far.has_errors()) throw DeckError(far);
   const ParticleCounts counts = expected_particles(model);
   const auto available =
       static_cast<double>(available_memory()) + static_cast<double>(resident_memory());

@@ -282,7 +282,10 @@ Aabb water_box(const Model& model) {
 void check_compression(const Model& model, const SoundSpeed& sound, Diagnostics& found) {
   const Aabb box = water_box(model);
   const double g = model.gravity.norm(), c = sound.value;
-  if (!(g > 0) || box.empty() || !box.lo.allFinite() || !box.hi.allFinite()) return;
+  // Without boundaries the water falls, and nothing presses on it.
+  if (!(g > 0) || model.boundaries.empty() || box.empty() || !box.lo.allFinite() ||
+      !box.hi.allFinite())
+    return;
   const double depth = (box.hi - box.lo).cwiseProduct(model.gravity.cwiseAbs() / g).sum();
   const double compression = g * depth / (c * c);
   constexpr double noticeable = 0.05, senseless = 0.2;

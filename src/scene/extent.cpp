@@ -76,7 +76,8 @@ void check_extent(const Model& model, Diagnostics& found) {
   extend(own, far->box);
   found.error(
       "E146", model.place_of(far->path), far->path,
-      fmt::format("the scene is too large: {:.4g} km across, {:.3g} spacings of {} m; {} reaches "
+      fmt::format("the scene is too large: {:.4g} km across, {:.3g} times its resolution of {} m; "
+                  "{} reaches "
                   "from [{:.9g}, {:.9g}, {:.9g}] to [{:.9g}, {:.9g}, {:.9g}] m",
                   longest_side(all) / 1000, longest_side(all) / model.resolution, model.resolution,
                   far->what, own.lo.x(), own.lo.y(), own.lo.z(), own.hi.x(), own.hi.y(),

@@ -163,9 +163,10 @@ class Inputs(ProgramTest):
         self.accepted("check", "many.yaml")
 
     def test_scenes_beyond_any_machine(self):
-        for change in ("resolution=1e-9", "resolution=1e-200", "bodies.drop.shape.max=[1e12, 1, 1e-3]"):
+        for says, change in (("particles", "resolution=1e-6"), ("km across", "resolution=1e-9"), ("km across", "resolution=1e-200"),
+                             ("km across", "bodies.drop.shape.max=[1e12, 1, 1e-3]")):
             self.write("deck.yaml", DECK)
-            self.refused(["error[E", "resolution", "particles"], "deck.yaml", "--set", change)
+            self.refused(["error[E", "resolution", says], "deck.yaml", "--set", change)
         self.write("tank.yaml", DECK + "boundaries: [{name: t, type: tank, min: [0, 0, 0], max: [1e15, 1, 1e15]}]\n")
         self.refused(["tank.yaml:6:", "walls of the tank"], "tank.yaml")
 

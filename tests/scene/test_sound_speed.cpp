@@ -24,7 +24,10 @@ SoundSpeed sound_with(const std::string& rest) {
 
 /// The findings of building a pool whose water has these keys, by id.
 std::string ids_with(const std::string& material) {
-  const Model model = read_deck_text(pool_deck(material, ""));
+  const Model model = read_deck_text(
+      pool_deck(material,
+                "boundaries: [{name: tank, type: tank, min: [0, 0, 0], max: [0.5, 0.2, "
+                "0.5], open: [top]}]\n"));
   Diagnostics found;
   build_scene<2>(model, found);
   std::string ids;
