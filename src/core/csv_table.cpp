@@ -29,12 +29,18 @@ std::optional<double> to_number(std::string_view s, bool decimal_comma = false) 
   if (s.empty() || s == "nan" || s == "NaN") return std::numeric_limits<double>::quiet_NaN();
   std::string with_point;
   if (const auto comma = s.find(','); decimal_comma && comma != std::string_view::npos) {
-    if (s.find('.') != std::string_view::npos) return {};
+    const auto digit = [&](std::size_t k) { return k < s.size() && s[k] >= '0' && s[k] <= '9'; };
+    if (s.find('.') != std::string_view::npos || comma == 0 || !digit(comma - 1) ||
+        !digit(comma + 1))
+      return {};
     with_point = s;
     with_point[comma] = '.';
     s = with_point;
   }
-  if (s.front() == '+') s.remove_prefix(1);
+  if (s.front() == '+') {
+    s.remove_prefix(1);
+    if (s.starts_with('-')) return {};
+  }
   double value = 0;
   const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), value);
   if (error != std::errc{} || end != s.data() + s.size() || !std::isfinite(value)) return {};
@@ -96,10 +102,12 @@ std::vector<std::string> join_units(std::vector<std::string> cells) {
   return joined;
 }
 
+/// Whether a row holds numbers only, or numbers and empty cells.
 bool all_numbers(const std::vector<std::string>& cells, bool decimal_comma) {
-  return std::all_of(cells.begin(), cells.end(), [&](const std::string& c) {
-    return !c.empty() && to_number(c, decimal_comma).has_value();
-  });
+  return std::all_of(
+             cells.begin(), cells.end(),
+             [&](const std::string& c) { return to_number(c, decimal_comma).has_value(); }) &&
+         std::any_of(cells.begin(), cells.end(), [](const std::string& c) { return !c.empty(); });
 }
 
 /// Whether the line holds the character outside of quotes.
@@ -166,8 +174,9 @@ void check_names(const std::vector<std::string>& names, const std::string& place
   std::set<std::string_view> seen;
   for (const std::string& name : names) {
     if (name.empty()) throw TableError(place + ": a column has no name");
-    if (!seen.insert(name).second)
-      throw TableError(fmt::format("{}: two columns are called '{}'", place, name));
+    const std::string_view plain = split_heading(name).name;
+    if (!seen.insert(plain).second)
+      throw TableError(fmt::format("{}: two columns are called '{}'", place, plain));
   }
 }
 

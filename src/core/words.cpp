@@ -32,6 +32,8 @@ double Words::number() {
   const std::string_view word = next();
   std::string_view digits = word;
   if (digits.starts_with('+')) digits.remove_prefix(1);
+  // A second sign is none: from_chars takes the '-' of "+-5".
+  if (digits.size() < word.size() && digits.starts_with('-')) digits = {};
   double v = 0.0;
   const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), v);
   if (status != std::errc() || end != digits.data() + digits.size())

@@ -71,6 +71,8 @@ Schema<Motion> Motion::schema() {
 void Motion::read_table(int dimension) {
   const CsvTable rows = read_csv_table(table->path);
   check_columns(rows, {"t", "time", "x", "y", "z", "angle"});
+  if (rows.has("time") && rows.has("t"))
+    throw TableError(rows.header_place() + ": the columns 't' and 'time' are the same");
   times_ = si_column(rows, rows.has("time") ? "time" : "t", unit::time);
   if (times_.size() < 2) throw TableError(table->path + ": a motion needs at least two rows");
   for (std::size_t k = 1; k < times_.size(); ++k)
@@ -87,6 +89,11 @@ void Motion::read_table(int dimension) {
     if (!rows.has(names[k])) continue;
     columns_[k] = si_column(rows, names[k], k < 3 ? unit::length : unit::angle);
     moves = true;
+    constexpr double farthest = 1e9;  // m or rad
+    for (std::size_t row = 0; row < columns_[k].size(); ++row)
+      if (!(std::abs(columns_[k][row]) <= farthest))
+        throw TableError(fmt::format("{}: {} = {}: is the unit right?", rows.place(row), names[k],
+                                     exact(columns_[k][row])));
     if (dimension == 2 && k == 1 &&
         std::any_of(columns_[k].begin(), columns_[k].end(), [](double y) { return y != 0; }))
       throw TableError(rows.header_place() + ": a 2D scene moves in x and z, not in y");

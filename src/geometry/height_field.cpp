@@ -82,6 +82,13 @@ void HeightField::prepare() {
   place(grid, where);
   const auto nx = static_cast<std::size_t>(nx_);
   if (flat && ny_ > 1) {
+    const double end = y0_ + (ny_ - 1) * dy_, slack = 1e-6 * dy_;
+    if (section < y0_ - slack || section > end + slack)
+      throw Error(
+          ExitCode::usage,
+          fmt::format("{}: the section at y = {} m lies outside of the terrain, which has y "
+                      "from {} to {} m: give `section`",
+                      where, exact(section), exact(y0_), exact(end)));
     // The bilinear surface cut at constant y is a polyline over the columns.
     std::vector<double> row(nx);
     for (int i = 0; i < nx_; ++i) row[static_cast<std::size_t>(i)] = height(x0_ + i * dx_, section);
@@ -158,6 +165,7 @@ void HeightField::place(const TerrainGrid& from, const std::string& where) {
     v = scale * v - map_origin.z() + origin.z();
     if (!(std::abs(v) <= longest)) fail("a height of " + exact(v) + " m: is `scale` right?");
   }
+  if (!std::isfinite(x0_) || !std::isfinite(y0_)) fail("the coordinates are not finite");
   const double reach = std::max({std::abs(x0_), std::abs(y0_), std::abs(x0_ + nx_ * dx_),
                                  std::abs(y0_ + ny_ * dy_)}),
                extent = std::hypot(nx_ * dx_, ny_ * dy_);

@@ -51,6 +51,8 @@ TerrainGrid read_esri(std::string_view text, const std::string& path,
     words.next();
     if (header.contains(word)) words.fail("'" + word + "' is given twice");
     header[word] = words.number();
+    if (word != "nodata_value" && !std::isfinite(header[word]))
+      words.fail("'" + word + "' is not a finite number");
   }
   const auto value = [&](const char* name) {
     const auto found = header.find(name);
@@ -63,6 +65,7 @@ TerrainGrid read_esri(std::string_view text, const std::string& path,
       words.fail(fmt::format("'{}' is {}, not a number of heights", name, exact(n)));
     return static_cast<int>(n);
   };
+  std::optional<double> marked;
   TerrainGrid grid;
   grid.placed = true;
   grid.nx = count("ncols");
@@ -75,7 +78,8 @@ TerrainGrid read_esri(std::string_view text, const std::string& path,
   // A corner is that of a cell, whose height stands at its centre.
   grid.x = header.contains("xllcenter") ? value("xllcenter") : value("xllcorner") + 0.5 * grid.dx;
   grid.y = header.contains("yllcenter") ? value("yllcenter") : value("yllcorner") + 0.5 * grid.dy;
-  if (!no_data && header.contains("nodata_value")) no_data = header["nodata_value"];
+  // What the header says, and also the usual marks: nothing real is that deep.
+  if (!no_data && header.contains("nodata_value")) marked = header["nodata_value"];
   grid.heights.resize(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny));
   for (int row = grid.ny - 1; row >= 0; --row)
     for (int i = 0; i < grid.nx; ++i)
@@ -84,6 +88,7 @@ TerrainGrid read_esri(std::string_view text, const std::string& path,
   if (const auto rest = words.next(); !rest.empty())
     words.fail(fmt::format("'{}' after the last of {} x {} heights", shortened(rest, 40), grid.nx,
                            grid.ny));
+  if (marked) mark_holes(grid.heights, marked);
   mark_holes(grid.heights, no_data);
   return grid;
 }
@@ -189,7 +194,8 @@ bool begins_as_esri(std::string_view text) {
 
 TerrainGrid read_terrain(const std::string& path, const std::string& format,
                          std::optional<double> no_data) {
-  const std::string text = read_file(path, max_file_bytes);
+  std::string text = read_file(path, max_file_bytes);
+  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // a byte order mark
   if (format == "esri" || (format == "auto" && begins_as_esri(text)))
     return read_esri(text, path, no_data);
   const CsvTable table = parse_csv_table(text, path, static_cast<std::size_t>(3 * most_heights));

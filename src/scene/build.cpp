@@ -306,8 +306,11 @@ Aabb scene_box(const Model& model) {
   for (const auto& b : model.boundaries) {
     const auto* wall = dynamic_cast<const WallBoundary*>(b.get());
     const auto solid = wall ? wall->solid(placement) : nullptr;
-    if (solid && solid->box().lo.allFinite())
-      box.extend(solid->box().lo + Vec3::Constant(placement.thickness));
+    if (!solid || !solid->box().lo.allFinite()) continue;
+    const Vec3 inner = solid->box().lo + Vec3::Constant(placement.thickness);
+    box.extend(inner);
+    if (solid->box().hi.allFinite())
+      box.extend(inner.cwiseMax(solid->box().hi - Vec3::Constant(placement.thickness)));
   }
   return box;
 }

@@ -50,7 +50,11 @@ std::vector<Part> parts_of(const Model& model) {
   return parts;
 }
 
-double longest_side(const Aabb& box) { return (box.hi - box.lo).maxCoeff(); }
+// Across, or from the origin, whichever is more: frames keep seven digits of a coordinate.
+double longest_side(const Aabb& box) {
+  return std::max((box.hi - box.lo).maxCoeff(),
+                  box.lo.cwiseAbs().cwiseMax(box.hi.cwiseAbs()).maxCoeff());
+}
 
 }  // namespace
 
@@ -58,6 +62,7 @@ void check_extent(const Model& model, Diagnostics& found) {
   const std::vector<Part> parts = parts_of(model);
   Aabb all;
   for (const Part& p : parts) extend(all, p.box);
+  if (all.empty()) return;
   const double most = most_spacings * model.resolution;
   if (!(longest_side(all) > most)) return;
   // To blame is the part without which the scene is smallest.
@@ -76,7 +81,8 @@ void check_extent(const Model& model, Diagnostics& found) {
   extend(own, far->box);
   found.error(
       "E146", model.place_of(far->path), far->path,
-      fmt::format("the scene is too large: {:.4g} km across, {:.3g} times its resolution of {} m; "
+      fmt::format("the scene is too large: {:.4g} km across or from the origin, {:.3g} times its "
+                  "resolution of {} m; "
                   "{} reaches "
                   "from [{:.9g}, {:.9g}, {:.9g}] to [{:.9g}, {:.9g}, {:.9g}] m",
                   longest_side(all) / 1000, longest_side(all) / model.resolution, model.resolution,

@@ -111,6 +111,8 @@ TEST_SUITE("boundaries") {
     CHECK_THROWS_AS(Table("t,X\n0,0\n1,1\n").motion(), DeckError);  // an unknown column
     CHECK_THROWS_AS(Table("t,roll\n0,0\n1,1\n").motion(), DeckError);
     CHECK_THROWS_AS(Table("t,x\n0,0\n1,\n2,1\n").motion(), DeckError);  // an empty cell
+    CHECK_THROWS_AS(Table("t,x\n0,0\n1,1e300\n").motion(), DeckError);
+    CHECK_THROWS_AS(Table("t,time,x\n0,0,0\n1,1,1\n").motion(), DeckError);
     CHECK_THROWS_AS(Table("t\n0\n1\n").motion(), DeckError);            // nothing moves
     CHECK_THROWS_AS(Table("t,x [s]\n0,0\n1,1\n").motion(), DeckError);  // not a length
     CHECK_THROWS_AS(motion("{table: no_such_file.csv}"), DeckError);

@@ -93,7 +93,7 @@ class Forecast(unittest.TestCase):
 
     def test_too_large(self):
         for command in (["check", QUICK], ["run", QUICK, "-o", "/nonexistent/run"]):
-            for change in (["resolution=1e-6"], ["resolution=1e-6", "dimension=3"]):
+            for change in (["resolution=2e-6"], ["resolution=2e-6", "dimension=3"]):
                 done = call(*command, *(w for c in change for w in ("--set", c)), processor_seconds=10)
                 self.assertEqual(done.returncode, 2, done.stderr)
                 self.assertEqual(done.stdout, "")

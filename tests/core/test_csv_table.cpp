@@ -93,6 +93,9 @@ TEST_SUITE("core") {
     CHECK(parse_csv_table("1, 2\n3, 4\n", "t.csv").numbers("2") == std::vector<double>{2, 4});
     CHECK(parse_csv_table("wave height\n0.5\n", "t.csv").names().size() == 1);
     CHECK(parse_csv_table("wave height,p\n0.5,1\n", "t.csv").names().size() == 2);
+    CHECK(parse_csv_table("7, ,5\n8, ,6\n", "t.csv").names().size() == 3);
+    CHECK(failure("a,p\n1,+-5\n", "p") == "t.csv:2: column 'p': '+-5' is not a finite number");
+    CHECK(failure("x,x [mm]\n1,2\n") == "t.csv:1: two columns are called 'x'");
     CHECK(failure("a;p\n1;1.000,5\n", "p") ==
           "t.csv:2: column 'p': '1.000,5' is not a finite number");
     CHECK(failure("a;p\n1;1,000,000\n", "p") ==

@@ -79,6 +79,9 @@ TEST_SUITE("geometry") {
     CHECK(complains("ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n",
                     "'2' after the last of 1 x 1 heights"));
     CHECK(complains("ncols 1\nnrows 1\nyllcorner 0\ncellsize 1\n1\n", "no 'xllcorner'"));
+    CHECK(
+        complains("ncols 1\nnrows 1\nxllcorner 0\nyllcorner nan\n", "'yllcorner' is not a finite"));
+    CHECK(complains("ncols 1\nnrows 1\nxllcorner +-5\n", "expected a number, found '+-5'"));
     CHECK(complains("ncols 1\nncols 1\n", "'ncols' is given twice"));
     CHECK(
         complains("ncols 99999\nnrows 99999\nxllcorner 0\nyllcorner 0\ncellsize 1\n", "too many"));
@@ -142,6 +145,11 @@ TEST_SUITE("geometry") {
     CHECK(filled.messages().find("2 heights are missing and were filled") != std::string::npos);
     // A plane is a solution of Laplace's equation.
     CHECK(filled.shape->signed_distance({1, 1, 3}) == doctest::Approx(0).epsilon(1e-6));
+    CHECK(
+        deck_complaint("ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value 0\n0 "
+                       "-9999\n",
+                       "")
+            .find("no height is known") != std::string::npos);
     CHECK(deck_complaint("-9999,-9999\n", ", spacing: 1, holes: fill").find("no height is known") !=
           std::string::npos);
     CHECK(deck_complaint("0,0\n0,7\n", ", spacing: 1, no_data: 7").find("1 of 4 heights") !=
