@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 #include "core/error.h"
 #include "core/memory.h"
 #include "core/parallel.h"
+#include "core/stopwatch.h"
 #include "core/text.h"
 #include "run/forecast.h"
 #include "run/relaxation_report.h"
@@ -22,8 +22,6 @@
 
 namespace sphgeo {
 namespace {
-
-using clock_type = std::chrono::steady_clock;
 
 nlohmann::ordered_json plan_json(const auto& world, const auto& plan) {
   nlohmann::ordered_json j;
@@ -120,11 +118,11 @@ template <int Dim>
 std::optional<Forecast> forecast_of(const Model& model, World<Dim>& world, Plan<Dim>& plan,
                                     const SoundSpeed& sound, const std::vector<Wish>& wishes,
                                     std::uint64_t base, const CheckOptions& options,
-                                    clock_type::time_point start) {
+                                    const QuietWatch& start) {
   if (world.sets().empty()) return std::nullopt;
-  const double started = std::chrono::duration<double>(clock_type::now() - start).count();
+  const double started = start.seconds();
   const BoundaryMesh walls = boundary_mesh(model);
-  const ForecastBasis basis(model, world, plan, sound, wishes, walls, base);
+  const ForecastBasis basis(model, world, plan, sound, wishes, walls, base, options.threads);
   std::optional<MeasuredCosts> costs;
   if (options.calibrate && basis.advection_steps() > 0) {
     try {
@@ -141,7 +139,7 @@ std::optional<Forecast> forecast_of(const Model& model, World<Dim>& world, Plan<
 }
 
 template <int Dim>
-int check(const Model& model, const CheckOptions& options, clock_type::time_point start) {
+int check(const Model& model, const CheckOptions& options, const QuietWatch& start) {
   const std::uint64_t base = resident_memory();
   Diagnostics found = model.warnings;
   Scene<Dim> scene = build_scene<Dim>(model, found, Filling::draft);
@@ -166,6 +164,11 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
     total += set->size();
   }
   j["particles"] = particles;
+  for (const BodyCount& b : scene.body_particles)
+    j["bodies"].push_back({{"name", b.name},
+                           {"particles", b.particles},
+                           {"filling", b.filling.relaxed ? "relaxed" : "lattice"},
+                           {"because", b.filling.because}});
   j["sound_speed"] = {{"value", scene.sound.value},
                       {"max_speed", scene.sound.max_speed},
                       {"because", scene.sound.because}};
@@ -187,10 +190,12 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
   std::cout << fmt::format("{}: {} dimensions, spacing {} m, {} s\n",
                            printable(model.title.empty() ? options.deck : model.title), Dim,
                            model.resolution, model.end_time);
-  for (const auto& set : world.sets())
-    std::cout << fmt::format("  {:<10} {:>10} particles\n", set->name(), set->size());
-  for (const auto& [name, n] : scene.body_particles)
-    std::cout << fmt::format("    body '{}': {}\n", name, n);
+  // As they were before the calibration, in which inlets work.
+  for (const auto& [set, n] : particles.items())
+    std::cout << fmt::format("  {:<10} {:>10} particles\n", set, n.dump());
+  for (const BodyCount& b : scene.body_particles)
+    std::cout << fmt::format("    body '{}': {}, {} ({})\n", b.name, b.particles,
+                             b.filling.relaxed ? "relaxed" : "on a lattice", b.filling.because);
   for (const auto& [name, n] : scene.boundary_particles)
     std::cout << fmt::format("    boundary '{}': {}\n", name, n);
   if (scene.pore_water)
@@ -217,7 +222,7 @@ int check(const Model& model, const CheckOptions& options, clock_type::time_poin
 }  // namespace
 
 int check_command(const CheckOptions& options) {
-  const auto start = clock_type::now();
+  const QuietWatch start;
   const Model model = read_deck(options.deck, options.set);
   refuse_too_large(model);
   if (options.threads > 0) set_threads(options.threads);  // also while the scene is built

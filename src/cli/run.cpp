@@ -50,7 +50,7 @@ class Terminal final : public RunObserver {
 };
 
 void print_costs(const Summary& summary) {
-  std::cerr << render_time_table(summary.effects, summary.threads);
+  std::cerr << render_time_table(summary.effects);
   std::cerr << fmt::format(
       "{} acoustic steps, {:.3g} million particle updates per second and core on {} thread{}\n",
       summary.acoustic_steps, summary.particle_updates_per_s_per_core / 1e6, summary.threads,
@@ -63,11 +63,20 @@ void print_costs(const Summary& summary) {
         summary.checkpoint.seconds / static_cast<double>(summary.checkpoint.count));
 }
 
+/// Compression by the pressure of a stagnation point, Ma^2 / 2, is 5 % there.
+constexpr double most_mach = 0.3;
+
 void print_end(const RunResult& run) {
   const Summary& summary = run.summary;
   for (const auto& [name, count] : run.lost)
     std::cerr << fmt::format("warning: {} particles of '{}' left the domain and were removed\n",
                              count, name);
+  if (const double mach = summary.guard.extreme("max_mach_water"); mach > most_mach)
+    std::cerr << fmt::format(
+        "warning: water moved at {:.2g} times its speed of sound at t = {:.4g} s; above {:g} its "
+        "density changes by more than 5 %, and pressures are not those of a liquid: give it a "
+        "larger max_speed or sound_speed\n",
+        mach, summary.guard.extreme("max_mach_water_time"), most_mach);
   if (!summary.expect.empty() && summary.status != "stopped")
     std::cout << render_expectations(summary.expect);
   if (summary.status == "stopped")

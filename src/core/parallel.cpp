@@ -78,6 +78,8 @@ class Workers {
   /// Processor time that all but the thread that asks for a loop have taken in it, less that in
   /// which the latter waited for its end, s.
   double seconds_elsewhere() const { return elsewhere_; }
+  /// Processor time of all threads in loops, s.
+  double seconds_in_loops() const { return shared_; }
   void count_time(bool on) { counting_ += on ? 1 : -1; }
 
   void set_count(int n) { count_ = std::max(n, 1); }
@@ -104,6 +106,8 @@ class Workers {
       ++loop_;
     }
     wake_.notify_all();
+    const bool counts = counting_ > 0;
+    const double begun = counts ? thread_seconds() : 0;
     const auto start = clock_type::now();
     if (const Index own = take_blocks(); own > 0) {
       const auto two_blocks = 2 * (clock_type::now() - start) / own;
@@ -111,7 +115,8 @@ class Workers {
     }
     Failure failure;
     {
-      const double before = counting_ > 0 ? thread_seconds() : -1;
+      const double before = counts ? thread_seconds() : -1;
+      if (counts) shared_ += before - begun;
       look_for(patience_, [&] { return active_ == 0; });
       std::unique_lock lock(mutex_);
       open_ = false;
@@ -172,7 +177,11 @@ class Workers {
       lock.unlock();
       const double before = counting_ > 0 ? thread_seconds() : -1;
       take_blocks();
-      if (before >= 0) elsewhere_ += thread_seconds() - before;
+      if (before >= 0) {
+        const double taken = thread_seconds() - before;
+        elsewhere_ += taken;
+        shared_ += taken;
+      }
       lock.lock();
       if (--active_ == 0) done_.notify_one();
     }
@@ -198,7 +207,7 @@ class Workers {
 
   std::atomic<clock_type::duration> patience_ = clock_type::duration::zero();  // see look_for
   std::atomic<int> counting_ = 0;
-  std::atomic<double> elsewhere_ = 0;
+  std::atomic<double> elsewhere_ = 0, shared_ = 0;
 };
 
 // One for the process: threads are a resource of the machine, and hold no state of a scene.
@@ -214,6 +223,8 @@ void set_threads(int n) { workers().set_count(n); }
 int threads() { return workers().count(); }
 
 double loop_processor_seconds() { return thread_seconds() + workers().seconds_elsewhere(); }
+
+double shared_processor_seconds() { return workers().seconds_in_loops(); }
 
 CountedLoops::CountedLoops() { workers().count_time(true); }
 CountedLoops::~CountedLoops() { workers().count_time(false); }

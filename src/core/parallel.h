@@ -25,6 +25,9 @@ int threads();
 /// latter as far as a CountedLoops lived.
 double loop_processor_seconds();
 
+/// Of it that of all threads in loops that they share.
+double shared_processor_seconds();
+
 /// During its lifetime the processor time of all threads in loops is counted, which takes a
 /// microsecond a loop.
 class CountedLoops {

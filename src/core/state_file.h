@@ -11,7 +11,7 @@ namespace sphgeo {
 
 /// What a file holds.
 struct StateFileKind {
-  std::string mark;  ///< stands in its last line, with the version of the layout: "checkpoint 4"
+  std::string mark;  ///< stands in its last line, with the version of the layout: "checkpoint 5"
   std::string noun;  ///< in errors: "checkpoint"
 };
 

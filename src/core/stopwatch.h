@@ -2,11 +2,14 @@
 // Time that parts of a run take: on the clock, and of the processors.
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <ctime>
 #include <optional>
+#include <string>
 
 #include "core/parallel.h"
+#include "core/state_io.h"
 
 namespace sphgeo {
 
@@ -23,12 +26,47 @@ inline double processor_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+/// The time that what follows takes on a machine with nothing else to do: the processor time
+/// outside of loops, and that of loops divided among the threads. Counts loops as long as it lives.
+class QuietWatch {
+ public:
+  double seconds() const {
+    const double shared = shared_processor_seconds() - shared_;
+    return std::max(0.0, loop_processor_seconds() - processor_ - shared * (1 - 1.0 / threads()));
+  }
+
+ private:
+  CountedLoops counted_;
+  double processor_ = loop_processor_seconds(), shared_ = shared_processor_seconds();
+};
+
 /// What a part of a run has taken so far.
 struct Spent {
   double seconds = 0;    ///< on the clock
   double processor = 0;  ///< of the thread of the run and of all others in its loops, s
   double latest = 0;     ///< of it that of the latest call that was asked, s
+  double offered = 0;    ///< by all threads that the run had meanwhile, s
+
+  /// Share of the threads' time in which they worked; 0 where no time passed.
+  double busy() const { return offered > 0 ? processor / offered : 0; }
+  Spent& operator+=(const Spent& other) {
+    seconds += other.seconds;
+    processor += other.processor;
+    offered += other.offered;
+    return *this;
+  }
 };
+
+/// What a run has spent is part of its state: a resumed run goes on counting, with another number
+/// of threads perhaps.
+inline void put_spent(StateSink& sink, const std::string& name, const Spent& spent) {
+  sink.put(name, std::array{spent.seconds, spent.processor, spent.offered});
+}
+inline Spent spent_of(const StateSource& source, const std::string& name) {
+  std::array<double, 3> v{};
+  source.get(name, std::span<double>(v));
+  return {.seconds = v[0], .processor = v[1], .offered = v[2]};
+}
 
 /// Adds to `spent` what its scope takes.
 class Stopwatch {
@@ -46,6 +84,7 @@ class Stopwatch {
     // Of a call shorter than the asking, no more than there can be.
     spent_.processor += std::min(spent_.latest, threads() * seconds);
     spent_.seconds += seconds;
+    spent_.offered += threads() * seconds;
   }
   Stopwatch(const Stopwatch&) = delete;
   Stopwatch& operator=(const Stopwatch&) = delete;

@@ -26,6 +26,8 @@ struct Shape {
   virtual double bound(const Vec3& at) const { return signed_distance(at); }
   /// Whether bound() may be less than the distance.
   virtual bool composed() const { return false; }
+  /// Whether every face lies along the axes, so that a lattice fits.
+  virtual bool along_axes() const { return false; }
   /// A box around the shape (m); components may be infinite.
   virtual Aabb box() const = 0;
   /// Reports defects of the geometry itself, such as an open surface.

@@ -24,9 +24,11 @@ Schema<Body> Body::schema() {
   s.required("name", &Body::name, unit::none, "the name of its particles and files");
   s.required("material", &Body::material, unit::none, "the name of an entry of 'materials'");
   s.required("shape", &Body::shape, unit::none, "the region it fills");
-  s.optional("filling", &Body::filling, unit::none,
-             "lattice: points of a square (cubic) lattice; relaxed: body-fitted by relaxation")
-      .choices({"lattice", "relaxed"});
+  s.optional(
+       "filling", &Body::filling, unit::none,
+       "lattice: points of a square (cubic) lattice; relaxed: body-fitted by relaxation; auto: "
+       "relaxed for solids with faces that are not along the axes")
+      .choices({"auto", "lattice", "relaxed"});
   s.optional("velocity", &Body::velocity, unit::speed, "initial velocity, formulas of x, y, z")
       .only_of("xyz");
   s.optional("pressure", &Body::pressure, unit::pressure,

@@ -29,7 +29,7 @@ struct Body {
   std::string name;
   std::string material;  ///< names an entry of `materials`
   std::shared_ptr<const Shape> shape;
-  std::string filling = "lattice";     ///< lattice | relaxed
+  std::string filling = "auto";        ///< auto | lattice | relaxed
   std::array<Expression, 3> velocity;  ///< initial, m/s
   WordOrExpression pressure{"zero",
                             {}};  ///< initial: zero | hydrostatic | hydraulic_head | a formula (Pa)

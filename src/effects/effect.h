@@ -81,6 +81,7 @@ struct StepLimits {
   const char* acoustic_by = "nothing";  ///< what bounds the acoustic step
   double mach = 0;      ///< largest |v| / c of any set; NaN when a velocity is no number
   std::string fastest;  ///< the set that holds it
+  double water_mach = 0;
 
   /// `by` tells what asks for the bound.
   void lower_acoustic(double bound, const char* by) {
@@ -99,8 +100,8 @@ struct StepLimits {
 struct FieldBound {
   std::string set;
   const FieldSpec* field;
-  double low, high;   ///< SI
-  std::string cause;  ///< what to look for when it is left
+  double low, high;                      ///< SI
+  std::string cause_below, cause_above;  ///< what to look for when it is left
 };
 
 /// What an effect counts beside its fields, for the ledger.

@@ -68,6 +68,8 @@ class SoilPredict final : public Effect<Dim> {
 
   void bounds(const World<Dim>&, std::vector<FieldBound>& watched) const override {
     watched.push_back({"soil", &fields::volume_fraction, 0.0, 4.0,
+                       "soil that comes apart faster than its time step resolves: something has "
+                       "thrown it, such as a start inside of a wall or body, or a fast impact",
                        "soil compressed by pressures of the order of its bulk modulus: bodies that "
                        "start inside each other, or a youngs_modulus that is too low"});
   }

@@ -73,6 +73,7 @@ class WaterKick final : public Effect<Dim> {
     const double h = water_->smoothing_length();
     const double speed = largest_speed(world);
     limits.note_speed("water", speed / w.sound_speed);
+    limits.water_mach = speed / w.sound_speed;
     const double acoustic = n.cfl_acoustic * h / (w.sound_speed + speed);  // Eq. 92
     limits.lower_acoustic(acoustic, "sound in water");
     // Eq. 91. At rest h/|v| has no bound: then the acoustic step bounds it, by a ratio that equals

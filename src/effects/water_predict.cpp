@@ -83,6 +83,8 @@ class WaterPredict final : public Effect<Dim> {
     const double rho0 = world.parameters().water.density,
                  most = world.parameters().numerics.density_bound * rho0;
     watched.push_back({"water", &fields::density, rho0 - most, rho0 + most,
+                       "water that comes apart faster than its time step resolves: something has "
+                       "thrown it, such as a start inside of a wall or body",
                        "pressures of the order of rho0 c0^2: bodies that start inside each other, "
                        "or a sound speed that is too low"});
   }

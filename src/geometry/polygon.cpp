@@ -74,6 +74,14 @@ double Polygon::signed_distance(const Vec3& at) const {
       section, std::max(y_min ? *y_min - at.y() : -inf, y_max ? at.y() - *y_max : -inf));
 }
 
+bool Polygon::along_axes() const {
+  for (std::size_t k = 0; k < corners_.size(); ++k) {
+    const Vec2 side = corners_[(k + 1) % corners_.size()] - corners_[k];
+    if (side.cwiseAbs().minCoeff() > 1e-12 * side.norm()) return false;
+  }
+  return true;
+}
+
 Aabb Polygon::box() const {
   Aabb b;
   for (const Vec2& p : corners_) b.extend(Vec3(p.x(), 0.0, p.y()));

@@ -5,6 +5,7 @@
 // extents are ignored there and boxes have y = 0. The check rule of each schema sets it; call
 // prepare() after filling a struct by hand.
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -36,6 +37,7 @@ struct Box final : SceneShape {
   Vec3 max = Vec3::Zero();
   static Schema<Box> schema();
   double signed_distance(const Vec3& at) const override { return box_distance(at, min, max, flat); }
+  bool along_axes() const override { return true; }
   Aabb box() const override { return seen({min, max}); }
 };
 
@@ -97,6 +99,7 @@ struct Polygon : SceneShape {
   void prepare();
   double signed_distance(const Vec3& at) const override;
   Aabb box() const override;
+  bool along_axes() const override;
   const std::vector<Vec2>& corners() const { return corners_; }  ///< (x, z)
 
  private:
@@ -110,6 +113,7 @@ struct HalfSpace final : SceneShape {
   static Schema<HalfSpace> schema();
   void prepare() { unit_ = direction_of(normal); }
   double signed_distance(const Vec3& at) const override { return (at - point).dot(unit_); }
+  bool along_axes() const override { return unit_.cwiseAbs().maxCoeff() > 1 - 1e-12; }
   Aabb box() const override;
 
  private:
@@ -192,6 +196,12 @@ struct BoundedShape : SceneShape {
   bool composed() const override { return true; }
 };
 
+/// Whether all these shapes have faces along the axes only.
+inline bool all_along_axes(const std::vector<ShapePtr>& shapes) {
+  return std::all_of(shapes.begin(), shapes.end(),
+                     [](const ShapePtr& s) { return s->along_axes(); });
+}
+
 /// For a point whose bound is zero but for round-off: whether it lies on a seam within the solid
 /// (where parts that touch cover each other's surface) rather than on the surface. Searches within
 /// `reach` (m).
@@ -202,6 +212,7 @@ struct Union final : BoundedShape {
   std::vector<ShapePtr> of;
   std::vector<Aabb> boxes;  ///< of the parts, to skip distant ones
   static Schema<Union> schema();
+  bool along_axes() const override { return all_along_axes(of); }
   double bound(const Vec3& at) const override;
   double signed_distance(const Vec3& at) const override;
   Aabb box() const override;
@@ -212,6 +223,7 @@ struct Union final : BoundedShape {
 struct Intersection final : BoundedShape {
   std::vector<ShapePtr> of;
   static Schema<Intersection> schema();
+  bool along_axes() const override { return all_along_axes(of); }
   double bound(const Vec3& at) const override;
   double signed_distance(const Vec3& at) const override;
   Aabb box() const override;
@@ -223,6 +235,7 @@ struct Difference final : BoundedShape {
   std::vector<ShapePtr> of;
   std::vector<Aabb> boxes;  ///< as of Union
   static Schema<Difference> schema();
+  bool along_axes() const override { return all_along_axes(of); }
   double bound(const Vec3& at) const override;
   double signed_distance(const Vec3& at) const override;
   Aabb box() const override;
@@ -233,6 +246,7 @@ struct Difference final : BoundedShape {
 struct Complement final : BoundedShape {
   ShapePtr of;
   static Schema<Complement> schema();
+  bool along_axes() const override { return of->along_axes(); }
   double bound(const Vec3& at) const override { return -of->bound(at); }
   double signed_distance(const Vec3& at) const override { return -of->signed_distance(at); }
   Aabb box() const override;
@@ -245,6 +259,7 @@ struct Shell final : SceneShape {
   double thickness = 0.0;
   std::string side = "inside";  ///< inside | outside | centered
   static Schema<Shell> schema();
+  bool along_axes() const override { return of->along_axes(); }
   double signed_distance(const Vec3& at) const override;
   Aabb box() const override;
   void inspect(CheckContext& context) const override;
@@ -263,6 +278,7 @@ struct Transform final : BoundedShape {
   Vec3 translate = Vec3::Zero();
   static Schema<Transform> schema();
   void prepare();
+  bool along_axes() const override;
   double bound(const Vec3& at) const override { return scale * of->bound(back(at)); }
   double signed_distance(const Vec3& at) const override {
     return scale * of->signed_distance(back(at));

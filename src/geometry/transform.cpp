@@ -38,6 +38,11 @@ void Transform::prepare() {
                         : Eigen::AngleAxisd(rotate, direction_of(axis)).toRotationMatrix();
 }
 
+bool Transform::along_axes() const {
+  // A quarter turn maps axes to axes: one component of each column is 1 or -1.
+  return of->along_axes() && (turn_.cwiseAbs().colwise().maxCoeff().array() > 1 - 1e-12).all();
+}
+
 Aabb Transform::box() const {
   const Aabb b = of->box();
   Aabb out;

@@ -18,8 +18,9 @@ Schema<Soil> Soil::schema() {
       .above(0)
       .at_most(1)
       .equation("Eq. 1");
-  s.required("youngs_modulus", &Soil::youngs_modulus, unit::pressure,
-             "Young's modulus E of the skeleton")
+  s.optional("youngs_modulus", &Soil::youngs_modulus, unit::pressure,
+             "Young's modulus E of the skeleton; auto: it does not deform and nothing but water "
+             "touches it (skeleton: fixed or prescribed)")
       .above(0);
   s.optional("poisson_ratio", &Soil::poisson_ratio, unit::none,
              "Poisson's ratio nu of the skeleton")
@@ -88,6 +89,11 @@ Schema<Soil> Soil::schema() {
       c.error("hydraulic_conductivity",
               "grain_size and hydraulic_conductivity belong to two drag laws",
               "give one of them, or choose with 'drag: ergun' or 'drag: darcy'");
+    if (m.moves_by_forces() && !m.youngs_modulus)
+      c.error("", "missing key 'youngs_modulus': the skeleton deforms",
+              "give it, as in 'youngs_modulus: 10 MPa', or 'skeleton: fixed' for soil that stays "
+              "where it is",
+              "E011");
     if (m.elastic()) {
       // By value: a resolved deck, which may be run again, has every key.
       const std::pair<const char*, bool> plastic[] = {
@@ -105,7 +111,7 @@ Schema<Soil> Soil::schema() {
     if (m.friction_angle && m.friction)
       c.error("friction", "the friction is given twice",
               "give friction_angle or friction, not both");
-    if (!m.friction_angle && !m.friction)
+    if (m.moves_by_forces() && !m.friction_angle && !m.friction)
       c.error("", "the soil has no friction",
               "give friction_angle (0 deg is allowed) or friction, or plasticity: none");
     // With more dilation than friction plastic flow would produce energy.

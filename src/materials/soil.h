@@ -13,7 +13,7 @@ namespace sphgeo {
 struct Soil final : MaterialSpec {
   double density = 0;                         ///< of the grains, rho^s, kg/m3
   std::optional<double> volume_fraction;      ///< n^s at t = 0, unless a body gives its own
-  double youngs_modulus = 0;                  ///< E of the skeleton, Pa
+  std::optional<double> youngs_modulus;       ///< E of the skeleton, Pa; needed where it deforms
   double poisson_ratio = 0.3;                 ///< nu
   std::string plasticity = "drucker_prager";  ///< drucker_prager | none
   std::optional<double> friction_angle;       ///< phi, rad
@@ -31,8 +31,8 @@ struct Soil final : MaterialSpec {
   std::string skeleton = "deformable";           ///< deformable | fixed | prescribed
 
   std::string phase() const override { return "soil"; }
-  double bulk_modulus() const { return youngs_modulus / (3 * (1 - 2 * poisson_ratio)); }
-  double shear_modulus() const { return youngs_modulus / (2 * (1 + poisson_ratio)); }
+  double bulk_modulus() const { return youngs_modulus.value_or(0) / (3 * (1 - 2 * poisson_ratio)); }
+  double shear_modulus() const { return youngs_modulus.value_or(0) / (2 * (1 + poisson_ratio)); }
   /// Oedometric modulus: stiffness of a laterally confined column, Pa.
   double oedometric_modulus() const { return bulk_modulus() + 4 * shear_modulus() / 3; }
   bool elastic() const { return plasticity == "none"; }

@@ -10,7 +10,7 @@
 
 namespace sphgeo {
 
-inline StateFileKind checkpoint_kind() { return {"checkpoint 4", "checkpoint"}; }
+inline StateFileKind checkpoint_kind() { return {"checkpoint 5", "checkpoint"}; }
 
 /// Collects the state of a run.
 class CheckpointWriter final : public StateFileWriter {

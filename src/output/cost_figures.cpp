@@ -32,6 +32,7 @@ Json to_json(const RunFigures& f) {
 Json to_json(const Forecast& f) {
   Json out = to_json(static_cast<const RunFigures&>(f));
   out["threads"] = f.threads;
+  out["slowdown"] = f.slowdown;
   out["ladder"] = Json::array();
   for (const LadderRung& r : f.ladder) {
     Json row = {{"resolution", r.resolution}};
@@ -65,6 +66,10 @@ std::string render_forecast(const Forecast& f, double resolution) {
       f.advection_steps, f.acoustic_steps, f.wall_s ? "about " + time_text(f) : "time unknown",
       f.threads, f.threads == 1 ? "" : "s", bytes_text(static_cast<double>(f.memory_bytes)),
       bytes_text(static_cast<double>(f.disk_bytes)));
+  if (f.wall_s && f.slowdown > 1.2)
+    out +=
+        fmt::format("  by processor time; the machine is busy: now it takes {:.1f} times as long\n",
+                    f.slowdown);
   out += fmt::format("  {:>12} {:>12} {:>10} {:>10} {:>12} {:>14} {:>8}\n", "spacing [m]",
                      "particles", "memory", "disk", "acoustic", "wall time", "threads");
   bool own = false;

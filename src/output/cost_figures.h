@@ -32,8 +32,10 @@ struct LadderRung {
   bool fits = true;  ///< into the memory that is available
 };
 
+/// Times are those of a machine with nothing else to do.
 struct Forecast : RunFigures {
   int threads = 1;
+  double slowdown = 1;             ///< by what else the machine did when it was made
   std::vector<LadderRung> ladder;  ///< coarsest first; without the deck's own spacing
 };
 

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -144,6 +145,10 @@ void CsvWriter::flush(bool to_disk) {
 }
 
 void CsvWriter::wait_for_disk() const {
+  // Rows of a file without a name are lost when the run ends.
+  struct stat file {};
+  if (::fstat(descriptor_, &file) == 0 && file.st_nlink == 0)
+    throw IoError(path_, "was removed while the run was writing it");
   if (::fsync(descriptor_) != 0) throw_io_error(path_, "cannot flush to the disk", errno);
 }
 

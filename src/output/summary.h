@@ -33,6 +33,13 @@ struct GuardReport {
   std::optional<Vec3> place;                             ///< m
   std::optional<double> time;                            ///< s
   std::vector<std::pair<std::string, double>> extremes;  ///< max_speed, min_density, lost ...
+
+  /// One of the extremes; 0 when it was not watched.
+  double extreme(const std::string& name) const {
+    for (const auto& [key, value] : extremes)
+      if (key == name) return value;
+    return 0;
+  }
 };
 
 /// The checkpoints that this process has written.

@@ -6,11 +6,7 @@
 
 namespace sphgeo {
 
-double busy_share(const Spent& spent, int threads) {
-  return spent.seconds > 0 ? spent.processor / (spent.seconds * threads) : 0;
-}
-
-std::vector<TimeRow> with_rest(std::vector<TimeRow> rows, const Spent& whole, int threads) {
+std::vector<TimeRow> with_rest(std::vector<TimeRow> rows, const Spent& whole) {
   std::erase_if(rows, [](const TimeRow& r) { return r.calls == 0 && r.spent.seconds == 0; });
   std::sort(rows.begin(), rows.end(), [](const TimeRow& a, const TimeRow& b) {
     return a.spent.seconds != b.spent.seconds ? a.spent.seconds > b.spent.seconds : a.name < b.name;
@@ -20,16 +16,17 @@ std::vector<TimeRow> with_rest(std::vector<TimeRow> rows, const Spent& whole, in
   for (const TimeRow& r : rows) {
     rest.seconds -= r.spent.seconds;
     rest.processor -= r.spent.processor;
+    rest.offered -= r.spent.offered;
   }
   rows.push_back({"rest", 1, rest});
   for (TimeRow& r : rows) {
     r.share = whole.seconds > 0 ? r.spent.seconds / whole.seconds : 0;
-    r.busy = busy_share(r.spent, threads);
+    r.busy = r.spent.busy();
   }
   return rows;
 }
 
-std::string render_time_table(const std::vector<TimeRow>& rows, int threads) {
+std::string render_time_table(const std::vector<TimeRow>& rows) {
   std::size_t width = 6;
   for (const TimeRow& r : rows) width = std::max(width, r.name.size());
   std::string out = fmt::format("  {:<{}}  {:>10}  {:>10}  {:>7}  {:>7}\n", "effect", width,
@@ -45,11 +42,10 @@ std::string render_time_table(const std::vector<TimeRow>& rows, int threads) {
     if (!r.walked_set.empty())
       out += fmt::format("  {:.3g} % of {}", 100 * r.walked_share, r.walked_set);
     out += '\n';
-    total.spent.seconds += r.spent.seconds;
-    total.spent.processor += r.spent.processor;
+    total.spent += r.spent;
     total.share += r.share;
   }
-  total.busy = busy_share(total.spent, threads);
+  total.busy = total.spent.busy();
   return out + line(total, "") + '\n';
 }
 

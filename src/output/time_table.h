@@ -21,14 +21,11 @@ struct TimeRow {
   double busy = 0;  ///< processor time over wall time and threads: 1 when all threads work
 };
 
-/// Processor time over the time that so many threads had; 0 where no time passed.
-double busy_share(const Spent& spent, int threads);
-
 /// Sets the shares, sorts by time (ties by name), drops rows that never ran and appends "rest": the
 /// time that no row accounts for. `whole` is that of the whole run.
-std::vector<TimeRow> with_rest(std::vector<TimeRow> rows, const Spent& whole, int threads);
+std::vector<TimeRow> with_rest(std::vector<TimeRow> rows, const Spent& whole);
 
 /// The table as text for a terminal, with a line for the total; `rows` come from with_rest().
-std::string render_time_table(const std::vector<TimeRow>& rows, int threads);
+std::string render_time_table(const std::vector<TimeRow>& rows);
 
 }  // namespace sphgeo

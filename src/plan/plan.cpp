@@ -241,8 +241,7 @@ template <int Dim>
 void Plan<Dim>::save(StateSink& sink) const {
   for (const auto& e : effects_) {
     sink.put_count("effects/" + e.label + "/calls", e.calls);
-    sink.put_number("effects/" + e.label + "/seconds", e.spent.seconds);
-    sink.put_number("effects/" + e.label + "/processor_seconds", e.spent.processor);
+    put_spent(sink, "effects/" + e.label + "/spent", e.spent);
     e.effect->save(sink, "effects/" + e.label + "/state/");
     if (e.walked_list == nullptr) continue;
     sink.put_number("effects/" + e.label + "/walked", e.walked);
@@ -257,8 +256,7 @@ void Plan<Dim>::load(const StateSource& source) {
     // An observer may be new: what is asked of a run may change when it goes on.
     if (!source.has("effects/" + e.label + "/calls")) continue;
     e.calls = source.count("effects/" + e.label + "/calls");
-    e.spent = {source.number("effects/" + e.label + "/seconds"),
-               source.number("effects/" + e.label + "/processor_seconds")};
+    e.spent = spent_of(source, "effects/" + e.label + "/spent");
     if (!source.has("effects/" + e.label + "/walked")) continue;
     e.walked = source.number("effects/" + e.label + "/walked");
     e.in_set = source.number("effects/" + e.label + "/in_set");

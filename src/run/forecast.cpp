@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "core/error.h"
@@ -18,8 +17,6 @@
 
 namespace sphgeo {
 namespace {
-
-using clock_type = std::chrono::steady_clock;
 
 // No set may be larger: offsets of records are 32-bit numbers.
 constexpr double largest_set = (1 << 29) - 2;
@@ -215,8 +212,9 @@ void refuse_too_large(const Model& model) {
 template <int Dim>
 ForecastBasis::ForecastBasis(const Model& model, World<Dim>& world, const Plan<Dim>& plan,
                              const SoundSpeed& sound, const std::vector<Wish>& wishes,
-                             const BoundaryMesh& walls, std::uint64_t base)
+                             const BoundaryMesh& walls, std::uint64_t base, int asked_threads)
     : model_(model),
+      asked_threads_(asked_threads),
       counts_(counts_of(world)),
       shares_(memory_shares(world, plan)),
       base_(static_cast<double>(base)),
@@ -271,6 +269,7 @@ Forecast ForecastBasis::operator()(const std::optional<MeasuredCosts>& costs) co
   Forecast forecast;
   static_cast<RunFigures&>(forecast) = figures(1, counts_, threads(), costs);
   forecast.threads = threads();
+  if (costs) forecast.slowdown = costs->step.slowdown;
   const auto memory =
       static_cast<double>(available_memory()) + static_cast<double>(resident_memory());
   const ParticleCounts expected = expected_particles(model_);
@@ -278,7 +277,7 @@ Forecast ForecastBasis::operator()(const std::optional<MeasuredCosts>& costs) co
     ParticleCounts at = expected_particles(at_resolution(model_, coarser * model_.resolution));
     // The error of the estimate at the deck's own spacing is the same at the others.
     for (auto& [set, n] : at) n *= ratio(count_of(counts_, set), count_of(expected, set));
-    const int with_threads = sensible_threads(whole(fluid(at)), 0);
+    const int with_threads = sensible_threads(whole(fluid(at)), asked_threads_);
     LadderRung rung{coarser * model_.resolution, figures(coarser, at, with_threads, costs),
                     with_threads, true};
     rung.fits =
@@ -303,10 +302,11 @@ std::optional<MeasuredCosts> measure_costs(const Model& model, World<Dim>& world
     }
     if (!costs) return costs;
     const double larger = ratio(particles, fluid(counts_of(*copy.scene.world)));
-    return MeasuredCosts{start,
-                         {costs->step.advection * larger, costs->step.acoustic * larger},
-                         costs->observation * larger,
-                         costs->frame * larger};
+    return MeasuredCosts{
+        start,
+        {costs->step.advection * larger, costs->step.acoustic * larger, costs->step.slowdown},
+        costs->observation * larger,
+        costs->frame * larger};
   }
   MeasuredCosts costs;
   costs.start = start;
@@ -314,22 +314,25 @@ std::optional<MeasuredCosts> measure_costs(const Model& model, World<Dim>& world
   const auto step = calibrate<Dim>(world, plan, 1.0, steps);
   if (!step) return std::nullopt;
   costs.step = *step;
-  auto begin = clock_type::now();
-  plan.run(Stage::observe);
-  sample_probes(model, world);
-  costs.observation = seconds_since(begin);
-  begin = clock_type::now();
+  {
+    const QuietWatch watch;
+    plan.run(Stage::observe);
+    sample_probes(model, world);
+    costs.observation = watch.seconds();
+  }
+  const QuietWatch watch;
   run_output(model, world, wishes, walls, 1e9);
-  costs.frame = seconds_since(begin);
+  costs.frame = watch.seconds();
   return costs;
 }
 
 template <int Dim>
-void RunForecast<Dim>::arrive(double wall) {
+void RunForecast<Dim>::arrive() {
   timer_.end();
   if (basis_) return;
-  basis_.emplace(model_, world_, plan_, sound_, wishes_, walls_, base_);
-  costs_.start = wall;
+  basis_.emplace(model_, world_, plan_, sound_, wishes_, walls_, base_, asked_threads_);
+  costs_.start = starting_->seconds();
+  starting_.reset();
 }
 
 template <int Dim>
@@ -361,9 +364,11 @@ std::optional<Forecast> RunForecast<Dim>::result() const {
 }
 
 template ForecastBasis::ForecastBasis(const Model&, World<2>&, const Plan<2>&, const SoundSpeed&,
-                                      const std::vector<Wish>&, const BoundaryMesh&, std::uint64_t);
+                                      const std::vector<Wish>&, const BoundaryMesh&, std::uint64_t,
+                                      int);
 template ForecastBasis::ForecastBasis(const Model&, World<3>&, const Plan<3>&, const SoundSpeed&,
-                                      const std::vector<Wish>&, const BoundaryMesh&, std::uint64_t);
+                                      const std::vector<Wish>&, const BoundaryMesh&, std::uint64_t,
+                                      int);
 template std::optional<MeasuredCosts> measure_costs<2>(const Model&, World<2>&, Plan<2>&,
                                                        const std::vector<Wish>&,
                                                        const BoundaryMesh&, double, double);

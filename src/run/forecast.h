@@ -2,8 +2,10 @@
 // The forecast of a deck, put together for `check` and for `run`, and the refusal of a scene that
 // the machine has no memory for.
 
+#include <memory>
 #include <optional>
 
+#include "core/stopwatch.h"
 #include "output/cost_figures.h"
 #include "output/time_table.h"
 #include "run/run_output.h"
@@ -15,7 +17,7 @@ namespace sphgeo {
 /// with what is needed, what is available and which resolution would fit.
 void refuse_too_large(const Model& model);
 
-/// Measured costs that the forecast of the time rests on, s.
+/// Measured costs that the forecast of the time rests on, s: on a machine with nothing else to do.
 struct MeasuredCosts {
   double start = 0;  ///< from the start of the program to the first step
   StepCost step;
@@ -25,12 +27,13 @@ struct MeasuredCosts {
 
 /// Input of the forecast, taken from a world after a rearrangement. The world is not changed.
 /// `base` is the memory of the process before it had any particles, bytes: program, libraries,
-/// deck.
+/// deck. `asked_threads` are those that the user asked for, also at other spacings; 0: as many as
+/// suit.
 struct ForecastBasis {
   template <int Dim>
   ForecastBasis(const Model& model, World<Dim>& world, const Plan<Dim>& plan,
                 const SoundSpeed& sound, const std::vector<Wish>& wishes, const BoundaryMesh& walls,
-                std::uint64_t base);
+                std::uint64_t base, int asked_threads);
 
   /// The forecast for the threads in use; without the time when no costs are given.
   Forecast operator()(const std::optional<MeasuredCosts>& costs) const;
@@ -41,6 +44,7 @@ struct ForecastBasis {
                      const std::optional<MeasuredCosts>& costs) const;
 
   const Model& model_;
+  int asked_threads_;
   ParticleCounts counts_;
   std::vector<MemoryShare> shares_;
   double base_;
@@ -61,10 +65,12 @@ std::optional<MeasuredCosts> measure_costs(const Model& model, World<Dim>& world
 template <int Dim>
 class RunForecast {
  public:
-  /// `base` as in ForecastBasis.
+  /// `base` and `asked_threads` as in ForecastBasis; `starting` counts what comes before the first
+  /// step.
   RunForecast(const Model& model, World<Dim>& world, const Plan<Dim>& plan,
               const Stepper<Dim>& stepper, SoundSpeed sound, std::vector<Wish> wishes,
-              const BoundaryMesh& walls, std::uint64_t base)
+              const BoundaryMesh& walls, std::uint64_t base, int asked_threads,
+              std::unique_ptr<QuietWatch> starting)
       : model_(model),
         world_(world),
         plan_(plan),
@@ -72,10 +78,12 @@ class RunForecast {
         wishes_(std::move(wishes)),
         walls_(walls),
         base_(base),
+        asked_threads_(asked_threads),
+        starting_(std::move(starting)),
         timer_(world, plan, stepper) {}
 
-  /// At the beginning of every safe point; `wall` is the time since the start of the program, s.
-  void arrive(double wall);
+  /// At the beginning of every safe point.
+  void arrive();
   /// At the end of every safe point; `rows` are those of the recorder.
   void leave(const std::vector<TimeRow>& rows);
   /// None when the run never came to its first step.
@@ -89,6 +97,8 @@ class RunForecast {
   std::vector<Wish> wishes_;
   const BoundaryMesh& walls_;
   std::uint64_t base_;
+  int asked_threads_;
+  std::unique_ptr<QuietWatch> starting_;  ///< until the first step
   StepTimer<Dim> timer_;
   MeasuredCosts costs_;
   std::optional<ForecastBasis> basis_;

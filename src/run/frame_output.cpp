@@ -80,8 +80,7 @@ template <int Dim>
 void FrameOutput<Dim>::save(StateSink& sink) const {
   sink.put_count("output/frames/count", frame_);
   sink.put_number("output/frames/last_time", last_time_);
-  sink.put_number("output/frames/seconds", spent_.seconds);
-  sink.put_number("output/frames/processor_seconds", spent_.processor);
+  put_spent(sink, "output/frames/spent", spent_);
   sink.put_count("output/frames/calls", calls_);
 }
 
@@ -89,8 +88,7 @@ template <int Dim>
 void FrameOutput<Dim>::load(const StateSource& source) {
   frame_ = source.count("output/frames/count");
   last_time_ = source.number("output/frames/last_time");
-  spent_ = {source.number("output/frames/seconds"),
-            source.number("output/frames/processor_seconds")};
+  spent_ = spent_of(source, "output/frames/spent");
   calls_ = source.count("output/frames/calls");
 }
 

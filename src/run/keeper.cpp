@@ -49,8 +49,7 @@ void Keeper<Dim>::begin(double wall_seconds) {
   file.put_text("deck/decisive", decisive_yaml(model));
   file.put_text("deck/resolved", resolved_yaml(model));
   file.put_count("dimension", Dim);
-  file.put_number("wall_seconds", before_.seconds + wall_seconds);
-  file.put_number("processor_seconds", processor_so_far());
+  put_spent(file, "spent", so_far(wall_seconds));
   parts_.world.save(file);
   parts_.stepper.save(file);
   parts_.plan.save(file);

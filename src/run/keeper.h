@@ -37,10 +37,14 @@ class Keeper {
   void keep(double wall_seconds);
 
   double wall_before() const { return before_.seconds; }  ///< s
-  /// Of this part of the run and those before, without the thread that writes files beside it, s.
-  double processor_so_far() const {
-    return before_.processor + processor_seconds() - processor_start_ -
-           parts_.recorder.files().processor_seconds();
+  /// Of this part of the run, `wall_seconds` long so far, and those before, without the thread that
+  /// writes files beside it.
+  Spent so_far(double wall_seconds) const {
+    Spent all = before_;
+    return all += {.seconds = wall_seconds,
+                   .processor = processor_seconds() - processor_start_ -
+                                parts_.recorder.files().processor_seconds(),
+                   .offered = wall_seconds * threads()};
   }
   /// From the start of the last one until it was on the disk; what is still being written counts as
   /// the one before it, s.

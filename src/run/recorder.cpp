@@ -106,8 +106,7 @@ void Recorder<Dim>::save(StateSink& sink) {
   }
   frames_.save(sink);
   sink.put_number("output/frames/next", frame_times_.next());
-  sink.put_number("output/probes_seconds", spent_probes_.seconds);
-  sink.put_number("output/probes_processor_seconds", spent_probes_.processor);
+  put_spent(sink, "output/probes_spent", spent_probes_);
   sink.put_count("output/probes_calls", calls_probes_);
   // The ledger compares with the first row, which may be from an earlier process.
   for (const auto& [name, totals] : {std::pair{"first", &first_}, std::pair{"latest", &latest_}})
@@ -122,8 +121,7 @@ void Recorder<Dim>::load(const StateSource& source) {
     p.schedule.set_next(source.number("output/probes/" + p.series->name() + "/next"));
   frames_.load(source);
   frame_times_.set_next(source.number("output/frames/next"));
-  spent_probes_ = {source.number("output/probes_seconds"),
-                   source.number("output/probes_processor_seconds")};
+  spent_probes_ = spent_of(source, "output/probes_spent");
   calls_probes_ = source.count("output/probes_calls");
   for (const auto& [name, totals] : {std::pair{"first", &first_}, std::pair{"latest", &latest_}})
     if (const std::string at = std::string("output/ledger/") + name; source.has(at)) {

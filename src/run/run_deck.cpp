@@ -68,7 +68,7 @@ class DeckRun {
     Spent before;
     if (resumed) {
       stepper.load(*resumed);
-      before = {resumed->number("wall_seconds"), resumed->number("processor_seconds")};
+      before = spent_of(*resumed, "spent");
       observer_.resumes(world.clock.time, world.clock.advection_steps, checkpoint.path);
     }
     write_file_atomically(folder.resolved_deck(), resolved_yaml(model_));
@@ -78,7 +78,8 @@ class DeckRun {
     set_threads(sensible_threads(moving_particles(world), settings_.threads));
     const RunParts<Dim> parts{model_, world, plan, stepper, recorder};
     Keeper<Dim> keeper(parts, folder, before, processor_start_);
-    RunForecast<Dim> forecast(model_, world, plan, stepper, scene.sound, wishes, walls, base);
+    RunForecast<Dim> forecast(model_, world, plan, stepper, scene.sound, wishes, walls, base,
+                              settings_.threads, std::move(starting_));
 
     const std::optional<UnstableError> failure = step(parts, keeper, forecast);
     recorder.flush();
@@ -120,7 +121,7 @@ class DeckRun {
     const double wall_before = keeper.wall_before();
     RunHooks hooks;
     hooks.at_safe_point = [&] {
-      forecast.arrive(wall());
+      forecast.arrive();
       parts.recorder.observe(wall_before + wall(), world.clock.time >= model_.end_time);
       const Clock& c = world.clock;
       observer_.progress({c.time, model_.end_time, c.advection_steps, c.acoustic_steps,
@@ -165,6 +166,7 @@ class DeckRun {
   const Model& model_;
   const RunSettings& settings_;
   double processor_start_ = processor_seconds();  // of the process, s
+  std::unique_ptr<QuietWatch> starting_ = std::make_unique<QuietWatch>();
   RunObserver& observer_;
   std::string stopped_;  ///< why the run ends early
 };

@@ -25,9 +25,9 @@ double add_times(const RunParts<Dim>& parts, const Keeper<Dim>& keeper, Summary&
         {stage_name(e.info.stage), e.info.name, e.info.equations, e.effect->acts_on(), e.because});
     if (e.info.stage != Stage::observe) stepping += e.spent.seconds;
   }
-  const Spent whole{summary.wall_s, keeper.processor_so_far()};
-  summary.busy = busy_share(whole, summary.threads);
-  summary.effects = with_rest(std::move(rows), whole, summary.threads);
+  const Spent whole = keeper.so_far(summary.wall_s - keeper.wall_before());
+  summary.busy = whole.busy();
+  summary.effects = with_rest(std::move(rows), whole);
   return stepping;
 }
 

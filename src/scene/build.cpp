@@ -7,11 +7,9 @@
 
 #include "boundaries/exchange.h"
 #include "core/error.h"
-#include "core/hash.h"
 #include "core/parallel.h"
-#include "geometry/fill.h"
-#include "geometry/relaxation.h"
 #include "materials/water.h"
+#include "scene/body_filling.h"
 #include "scene/extent.h"
 #include "scene/interface.h"
 #include "scene/join_walls.h"
@@ -56,31 +54,6 @@ double support_radius(const Model& model) {
                   : water_smoothing_length(model));
 }
 
-BodyPoints fill_body(const Body& body, const Model& model) {
-  const double dp = body.spacing.value_or(model.resolution);
-  const Numerics& n = model.numerics;
-  BodyPoints points;
-  if (body.filling == "relaxed") {
-    RelaxedPositions relaxed = relax_fill(*body.shape, dp, model.dimension);
-    points = {std::move(relaxed.at), relaxed.volume};
-  } else {
-    points = {fill_lattice(*body.shape, dp, model.dimension), std::pow(dp, model.dimension)};
-  }
-  if (n.lattice_jitter > 0) {
-    // Bodies of equal shape get different jitter.
-    const std::uint64_t seed =
-        random_bits(static_cast<std::uint64_t>(n.lattice_seed), fnv1a(body.name));
-    parallel_for(static_cast<Index>(points.at.size()), [&](Index k) {
-      for (int axis = 0; axis < 3; ++axis)
-        if (axis != 1 || model.dimension == 3)
-          points.at[static_cast<std::size_t>(k)][axis] +=
-              (2 * random_uniform(seed, static_cast<std::uint64_t>(3 * k + axis)) - 1) *
-              n.lattice_jitter * dp;
-    });
-  }
-  return points;
-}
-
 namespace {
 
 /// Pressure at t = 0, Pa.
@@ -115,24 +88,14 @@ void add_water(Scene<Dim>& scene, const Model& model, Filling fill, Diagnostics&
     const MaterialSpec* material = model.material(body.material);
     if (!material || material->phase() != "water") continue;
     const std::string path = fmt::format("bodies[{}]", b);
-    BodyPoints filling;
-    try {
-      const std::vector<Vec3>* relaxed = scene.pore_water ? scene.pore_water->of_body(b) : nullptr;
-      filling =
-          relaxed ? BodyPoints{*relaxed, std::pow(model.resolution, Dim)} : fill_body(body, model);
-    } catch (const Error& e) {  // unbounded, or too large to fill
-      found.error("E113", model.place_of(path + ".shape"), path + ".shape", e.what());
-      continue;
-    }
-    if (filling.at.empty())
-      found.error(
-          "E110", model.place_of(path + ".shape"), path + ".shape", "the body holds no particle",
-          fmt::format(
-              "it is smaller than the resolution of {} m, or lies outside the plane of a 2D scene",
-              model.resolution));
+    const std::vector<Vec3>* relaxed = scene.pore_water ? scene.pore_water->of_body(b) : nullptr;
+    const BodyPoints filling = fill_body(model, b, found, relaxed);
+    if (filling.at.empty()) continue;
     const Index first = set.size();
     set.resize(first + static_cast<Index>(filling.at.size()));
-    scene.body_particles.emplace_back(body.name, static_cast<Index>(filling.at.size()));
+    scene.body_particles.push_back(
+        {body.name, static_cast<Index>(filling.at.size()),
+         relaxed ? FillingChoice{true, "it meets water in soil"} : filling_of(body, model)});
     const double mass = water->density * filling.volume, c2 = scene.sound.value * scene.sound.value;
     auto& x = set.vector(fields::position);
     auto& v = set.vector(fields::velocity);

@@ -9,6 +9,7 @@
 #include "boundaries/boundary.h"
 #include "core/diagnostic.h"
 #include "deck/model.h"
+#include "scene/body_filling.h"
 #include "scene/pore_water.h"
 #include "sph/world.h"
 
@@ -21,12 +22,19 @@ struct SoundSpeed {
   std::string because;  ///< one sentence
 };
 
+/// The particles of a body, for `check`.
+struct BodyCount {
+  std::string name;
+  Index particles;
+  FillingChoice filling;
+};
+
 /// A world and the findings of building it.
 template <int Dim>
 struct Scene {
   const Model* model = nullptr;  ///< what it was built from
   std::unique_ptr<World<Dim>> world;
-  std::vector<std::pair<std::string, Index>> body_particles;      ///< by body of the deck
+  std::vector<BodyCount> body_particles;                          ///< by body of the deck
   std::vector<std::pair<std::string, Index>> boundary_particles;  ///< by boundary of the deck
   SoundSpeed sound{0, 0, ""};
   std::optional<PoreWater> pore_water;  ///< how the water in soil was filled, if there is any

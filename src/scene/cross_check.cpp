@@ -179,6 +179,29 @@ void check_probes(const Model& model, const World<Dim>& world, Diagnostics& foun
   }
 }
 
+// A skeleton that water alone touches needs no stiffness: what else touches it is repelled with it,
+// and of soil alone it sets the time step.
+template <int Dim>
+void check_stiffness(const Model& model, const World<Dim>& world, Diagnostics& found) {
+  const bool solids = std::any_of(world.sets().begin(), world.sets().end(),
+                                  [](const auto& s) { return s->phase() == "solid"; });
+  if (!world.find("soil") || (world.find("water") && !solids)) return;
+  for (const Body& body : model.bodies) {
+    const auto* soil = dynamic_cast<const Soil*>(model.material(body.material));
+    if (!soil || soil->youngs_modulus) continue;
+    for (std::size_t k = 0; k < model.materials.size(); ++k) {
+      if (model.materials[k].get() != soil) continue;
+      const std::string path = fmt::format("materials[{}]", k);
+      found.error("E154", model.place_of(path), path,
+                  fmt::format("soil '{}' has no youngs_modulus, and {}", soil->name,
+                              solids ? "solids can touch it"
+                                     : "there is no water, which alone sets a time step"),
+                  "give it, as in 'youngs_modulus: 10 MPa'");
+    }
+    return;
+  }
+}
+
 // Without a drag law water and soil interact by pressure only.
 template <int Dim>
 void check_coupling(const Model& model, const World<Dim>& world, Diagnostics& found) {
@@ -257,6 +280,7 @@ void check_scene(const Scene<Dim>& scene, Diagnostics& found) {
     check_bodies_overlap(model, *set, found);
     check_in_walls(model, world, *set, found);
   }
+  check_stiffness(model, world, found);
   check_coupling(model, world, found);
   check_lengths<Dim>(model, found);
   check_probes(model, world, found);

@@ -98,6 +98,12 @@ void FloodGrid::add_lid(const Vec3& at) {
   for_cells(at, closing * frame_.spacing, [&](Cell c) { state_[c] |= lid; });
 }
 
+bool FloodGrid::solid_at(const Vec3& at) const {
+  bool all = true;
+  for_cells(at, 0.5 * cell_, [&](Cell c) { all = all && (state_[c] & solid) != 0; });
+  return all;
+}
+
 void FloodGrid::add_liquid(const Vec3& at) {
   for_cells(at, 0.5 * frame_.spacing, [&](Cell c) {
     if ((state_[c] & (solid | edge)) == 0) state_[c] |= liquid;

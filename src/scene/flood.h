@@ -37,6 +37,8 @@ class FloodGrid {
   void add_lid(const Vec3& at);
   /// Lets floods pass the lids (true) or stops them there.
   void ignore_lids(bool ignore) { lids_ = ignore ? 0 : lid; }
+  /// Whether a solid closes a position: a point of an open face behind which another wall stands.
+  bool solid_at(const Vec3& at) const;
   /// Marks the cells of a particle of the liquid as its own.
   void add_liquid(const Vec3& at);
   /// The liquid, cut into parts that do not touch each other, largest first, at most 200 of them.

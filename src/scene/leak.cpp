@@ -234,11 +234,11 @@ class LeakSearch {
         "intended");
   }
 
-  // A point of an open face that the pool starts at. Pools touch no other pool's cells, so the
-  // first one found near a point is this pool or another one.
+  // A point of an open face that the pool starts at, and no other wall closes. Pools touch no other
+  // pool's cells, so the first one found near a point is this pool or another one.
   const Parts::Lid* touched_lid(int pool) const {
     for (const auto& l : parts_.lids)
-      if (grid_.pool_at(l.at, 0.8 * frame_.spacing) == pool) return &l;
+      if (!grid_.solid_at(l.at) && grid_.pool_at(l.at, 0.8 * frame_.spacing) == pool) return &l;
     return nullptr;
   }
 

@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "deck/yaml_writer.h"
 #include "geometry/shapes.h"
+#include "scene/body_filling.h"
 #include "scene/pore_water.h"
 
 namespace sphgeo {
@@ -150,7 +151,8 @@ std::string depends_on(const Model& model, const PoreBodies& pores) {
   for (const std::size_t b : pores.bodies) {
     Node body = Node::map();
     body.add("shape", described(model.bodies[b].shape));
-    body.add("filling", Node::scalar(model.bodies[b].filling));
+    body.add("filling",
+             Node::scalar(filling_of(model.bodies[b], model).relaxed ? "relaxed" : "lattice"));
     water.items.push_back(std::move(body));
   }
   out.add("water", std::move(water));

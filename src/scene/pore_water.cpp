@@ -12,6 +12,7 @@
 #include "geometry/fill.h"
 #include "geometry/shapes.h"
 #include "scene/acceptance.h"
+#include "scene/body_filling.h"
 #include "scene/smooth_fraction.h"
 
 namespace sphgeo {
@@ -72,7 +73,7 @@ PoreWater fill(const Model& model, const PoreBodies& pores, bool draft) {
   for (const std::size_t k : accepted) {
     const auto own =
         static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), k) - ends.begin());
-    const bool relaxed = model.bodies[pores.bodies[own]].filling == "relaxed";
+    const bool relaxed = filling_of(model.bodies[pores.bodies[own]], model).relaxed;
     // A soil of another body may begin right beside this one.
     const bool fixed = !relaxed && !all[k].near_cut && all[k].water == 1 &&
                        target.locate(all[k].at).holds > lattice_distance * dp;

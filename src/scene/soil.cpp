@@ -147,17 +147,11 @@ std::vector<double> add_soil(Scene<Dim>& scene, const Model& model, Filling fill
     const Soil* soil = soil_of(model, model.bodies[b]);
     if (!soil) continue;
     // Also for a resumed run: the reference density is that of these particles.
-    const BodyPoints points = fill_body(model.bodies[b], model);
+    const BodyPoints points = fill_body(model, b, found);
     densities[b] = soil->density * mean_fraction(model.bodies[b], *soil, points);
-    if (filling == Filling::none) continue;
-    const std::string path = fmt::format("bodies[{}].shape", b);
-    if (points.at.empty())
-      found.error(
-          "E110", model.place_of(path), path, "the body holds no particle",
-          fmt::format(
-              "it is smaller than the resolution of {} m, or lies outside the plane of a 2D scene",
-              model.resolution));
-    scene.body_particles.emplace_back(model.bodies[b].name, static_cast<Index>(points.at.size()));
+    if (filling == Filling::none || points.at.empty()) continue;
+    scene.body_particles.push_back({model.bodies[b].name, static_cast<Index>(points.at.size()),
+                                    filling_of(model.bodies[b], model)});
     fill_one(set, model, b, *soil, points, found);
   }
   return densities;

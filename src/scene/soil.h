@@ -3,18 +3,10 @@
 
 #include <vector>
 
+#include "scene/body_filling.h"
 #include "scene/build.h"
 
 namespace sphgeo {
-
-/// The particles of one body before they join their set.
-struct BodyPoints {
-  std::vector<Vec3> at;
-  double volume;  ///< of one particle, m3 (m2 in 2D)
-};
-
-/// Fills the shape of a body as its `filling` says.
-BodyPoints fill_body(const Body& body, const Model& model);
 
 /// Whether a body of soil is in the deck.
 bool has_soil(const Model& model);

@@ -26,9 +26,9 @@ void fill_one(ParticleSet<Dim>& set, const Model& model, std::size_t b, const So
   // The weight of a boulder is that of its shape: its particles represent the volume of the shape,
   // not the cells of the lattice.
   const double volume =
-      body.filling == "lattice" && !filling.at.empty()
-          ? cut_volume(*body.shape, set.spacing(), Dim) / static_cast<double>(filling.at.size())
-          : filling.volume;
+      filling_of(body, model).relaxed
+          ? filling.volume
+          : cut_volume(*body.shape, set.spacing(), Dim) / static_cast<double>(filling.at.size());
   std::vector<Index> held(body.clamped.size(), 0);
   for (std::size_t k = 0; k < filling.at.size(); ++k) {
     const Vec3& at = filling.at[k];
@@ -110,15 +110,10 @@ void add_solids(Scene<Dim>& scene, const Model& model, Filling filling, Diagnost
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
       const SolidMaterial* solid = solid_of(model, model.bodies[b]);
       if (!solid || solid_set_of(model, b) != name) continue;
-      const BodyPoints points = fill_body(model.bodies[b], model);
-      const std::string path = fmt::format("bodies[{}].shape", b);
-      if (points.at.empty())
-        found.error(
-            "E110", model.place_of(path), path, "the body holds no particle",
-            fmt::format(
-                "it is smaller than its spacing of {} m, or lies outside the plane of a 2D scene",
-                spacings[k]));
-      scene.body_particles.emplace_back(model.bodies[b].name, static_cast<Index>(points.at.size()));
+      const BodyPoints points = fill_body(model, b, found);
+      if (points.at.empty()) continue;
+      scene.body_particles.push_back({model.bodies[b].name, static_cast<Index>(points.at.size()),
+                                      filling_of(model.bodies[b], model)});
       fill_one(set, model, b, *solid, points, found);
     }
   }

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "boundaries/exchange.h"
+#include "core/indices_where.h"
 #include "core/parallel.h"
 #include "geometry/shapes.h"
 #include "probes/probe.h"
@@ -80,26 +82,26 @@ void check_solid(const Scene<Dim>& scene, const Solid& s, Diagnostics& found) {
   }
 }
 
-// Water deep in a solid, where there are no wall particles. Water near its surface is found by
-// check_water_in_walls, also for moving boundaries.
+// Particles deep in a solid, where there are no wall particles. What is near its surface is found
+// by check_in_walls, also for moving boundaries. Clamped particles may lie there.
 template <int Dim>
-void check_water_in_solid(const Model& model, const World<Dim>& world, const Solid& s,
-                          Diagnostics& found) {
-  const ParticleSet<Dim>* water = world.find("water");
-  if (!water || !s.shape || !s.in_place) return;
+void check_deep_in_solid(const Model& model, const ParticleSet<Dim>& set, const Solid& s,
+                         Diagnostics& found) {
+  if (!s.shape || !s.in_place) return;
   const Aabb box = s.shape->box();
-  const auto& x = water->vector(fields::position);
+  const auto& x = set.vector(fields::position);
+  const auto* clamp = set.has(fields::clamp) ? &set.tag(fields::clamp) : nullptr;
   const double reach = support_radius(model);
   const auto deep = [&](Index i) {
     const Vec3 at = to_space<Dim>(x[i]);
-    return box.contains(at) && s.shape->bound(at) < -0.5 * model.resolution &&
-           s.shape->signed_distance(at) < -reach;
+    return !(clamp && (*clamp)[i] >= 0) && box.contains(at) &&
+           s.shape->bound(at) < -0.5 * model.resolution && s.shape->signed_distance(at) < -reach;
   };
-  const double count = ordered_sum(water->size(), [&](Index i) { return deep(i) ? 1.0 : 0.0; });
+  const double count = ordered_sum(set.size(), [&](Index i) { return deep(i) ? 1.0 : 0.0; });
   if (!(count > 0)) return;
   Index first = 0;
   while (!deep(first)) ++first;
-  const auto body = static_cast<std::size_t>(water->tag(fields::part)[first]);
+  const auto body = static_cast<std::size_t>(set.tag(fields::part)[first]);
   const std::string path = fmt::format("bodies[{}].shape", body);
   for (const Diagnostic& d : found.items())
     if (d.id == "E121" && d.path == path) return;
@@ -109,6 +111,90 @@ void check_water_in_solid(const Model& model, const World<Dim>& world, const Sol
           "body '{}' overlaps boundary '{}': {:.0f} particles lie deep in the solid, one at {}",
           model.bodies[body].name, s.wall->name, count, point_text(to_space<Dim>(x[first]))),
       "let the body end at the surface of the wall");
+}
+
+// Water and soil pass a wall of one layer of particles.
+template <int Dim>
+void check_thickness(const Model& model, const World<Dim>& world, const std::vector<Solid>& solids,
+                     Diagnostics& found) {
+  const ParticleSet<Dim>* walls = world.find("walls");
+  if (!walls || (!world.find("water") && !world.find("soil"))) return;
+  constexpr double least = 1.75;  // spacings; two layers fit into more
+  constexpr Index most_samples = 2000;
+  const double dp = model.resolution;
+  const auto in_some_solid = [&](const Vec3& at) {
+    return std::any_of(solids.begin(), solids.end(), [&](const Solid& s) {
+      return s.shape && s.in_place && s.shape->box().contains(at) && s.shape->bound(at) < 0;
+    });
+  };
+  const auto& x = walls->vector(fields::position);
+  const auto& normal = walls->vector(fields::normal);
+  const auto& part = walls->tag(fields::part);
+  for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
+    const auto s = std::find_if(solids.begin(), solids.end(), [&](const Solid& one) {
+      return one.wall == model.boundaries[b].get();
+    });
+    if (s == solids.end() || !s->shape || !s->in_place) continue;
+    const auto own = indices_where(
+        walls->size(), [&](Index i) { return part[i] == static_cast<std::int32_t>(b); });
+    const Index stride = 1 + static_cast<Index>(own.size()) / most_samples;
+    Index samples = 0, thin = 0;
+    double sum = 0;
+    for (std::size_t k = 0; k < own.size(); k += static_cast<std::size_t>(stride)) {
+      const Vec3 at = to_space<Dim>(x[own[k]]), out = to_space<Dim>(normal[own[k]]);
+      const double depth = -s->shape->signed_distance(at);
+      // The first layer behind the face that the normal looks out of.
+      if (!(depth < dp) || in_some_solid(at + (depth + 0.1 * dp) * out)) continue;
+      ++samples;
+      double thickness = 0.1;
+      while (thickness < least && in_some_solid(at + (depth - thickness * dp) * out))
+        thickness += 0.05;
+      if (thickness >= least) continue;
+      ++thin;
+      sum += thickness;
+    }
+    if (!(2 * thin > samples)) continue;
+    const std::string path = fmt::format("boundaries[{}].shape", b);
+    found.warning(
+        "W149", model.place_of(path), path,
+        fmt::format("boundary '{}' is about {:.2g} spacings thick: water and soil leak through "
+                    "walls of less than two",
+                    s->wall->name, sum / static_cast<double>(thin)),
+        fmt::format("make it {:.4g} m thick or more, or refine the resolution to {:.2g} m", 2 * dp,
+                    sum / static_cast<double>(thin) * dp / 2));
+  }
+}
+
+// Water leaves through an inlet when nothing stands behind it and what is before it pushes.
+template <int Dim>
+void check_inlets(const Model& model, const std::vector<Solid>& solids, Diagnostics& found) {
+  for (std::size_t b = 0; b < model.boundaries.size(); ++b) {
+    const auto* inlet = dynamic_cast<const Inlet*>(model.boundaries[b].get());
+    if (!inlet || inlet->share < 1) continue;  // rain
+    const Vec3 flow = inlet->velocity_at(inlet->from);
+    const int across = inlet->axis(Dim);
+    Vec3 back = Vec3::Zero();
+    back[across] = flow[across] > 0 ? -1 : 1;
+    // From above, water falls away from the inlet.
+    if (back.dot(model.gravity) < -0.5 * model.gravity.norm()) continue;
+    const std::vector<Vec3> layer = inlet->layer(model.resolution, Dim);
+    const auto closed = [&](const Vec3& at) {
+      for (const double way : {0.5, 1.0, 1.5, 2.0})
+        for (const Solid& s : solids)
+          if (s.shape && s.in_place && s.shape->bound(at + way * model.resolution * back) < 0)
+            return true;
+      return false;
+    };
+    const auto open =
+        std::find_if(layer.begin(), layer.end(), [&](const Vec3& p) { return !closed(p); });
+    if (open == layer.end()) continue;
+    const std::string path = fmt::format("boundaries[{}]", b);
+    found.add({Severity::note, "N153", model.place_of(path), path,
+               fmt::format("nothing closes inlet '{}' from behind, at {} for one: water that is "
+                           "pushed against it runs out of the scene there",
+                           inlet->name, point_text(*open)),
+               "a wall half a spacing to two spacings behind it keeps the water in"});
+  }
 }
 
 void check_probes(const Model& model, const std::vector<Solid>& solids, Diagnostics& found) {
@@ -177,8 +263,12 @@ void check_walls(const Scene<Dim>& scene, Diagnostics& found) {
   const std::vector<Solid> solids = solids_of<Dim>(model);
   for (const Solid& s : solids) {
     check_solid(scene, s, found);
-    check_water_in_solid(model, world, s, found);
+    for (const auto& set : world.sets())
+      if (set->phase() != "wall" && set->name() != "interface")
+        check_deep_in_solid(model, *set, s, found);
   }
+  check_thickness(model, world, solids, found);
+  check_inlets<Dim>(model, solids, found);
   check_probes(model, solids, found);
   check_bodies_held(model, world, found);
 }

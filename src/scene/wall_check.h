@@ -5,9 +5,10 @@
 
 namespace sphgeo {
 
-/// Findings about boundaries: damaged surfaces, boundaries without particles (E115), boxes that are
-/// no multiple of the spacing (W122), water deep in a solid (E121), probes inside a solid (W128),
-/// bodies without any boundary below them (W129). Boundaries that overlap are joined.
+/// Findings about boundaries: damaged surfaces, boundaries without particles (E143), boxes that are
+/// no multiple of the spacing (W122), particles deep in a solid (E121), walls that water and soil
+/// pass (W149), inlets that are open behind (N153), probes inside a solid (W128), bodies without
+/// any boundary below them (W129). Boundaries that overlap are joined.
 template <int Dim>
 void check_walls(const Scene<Dim>& scene, Diagnostics& found);
 

@@ -85,6 +85,10 @@ template <int Dim>
 void Guard<Dim>::check_speed(const StepLimits& limits) {
   if (limits.mach < 1) {
     largest_mach_ = std::max(largest_mach_, limits.mach);
+    if (limits.water_mach > water_mach_) {
+      water_mach_ = limits.water_mach;
+      water_mach_time_ = world_.clock.time;
+    }
     return;
   }
   const ParticleSet<Dim>& set = world_.set(limits.fastest);
@@ -166,7 +170,7 @@ void Guard<Dim>::check_bounds(bool note) {
         stop(bound.field->name, set, *bound.field, i,
              fmt::format("the {} of {:.5g} {} is outside of [{:.5g}, {:.5g}] at", bound.field->name,
                          values[i], bound.field->unit.symbol, bound.low, bound.high),
-             bound.cause);
+             values[i] < bound.low ? bound.cause_below : bound.cause_above);
   }
 }
 
@@ -244,6 +248,27 @@ std::string Guard<Dim>::writer_of(const std::string& set, const FieldSpec& field
   return name;
 }
 
+/// The nearest wall particle that a particle lies behind, or -1: then it is inside of that wall.
+template <int Dim>
+Index Guard<Dim>::wall_before(const ParticleSet<Dim>& set, Index i) const {
+  const ParticleSet<Dim>* walls = world_.find("walls");
+  if (!walls) return -1;
+  const Vec<Dim> at = set.vector(fields::position)[i];
+  const auto& y = walls->vector(fields::position);
+  const auto& normal = walls->vector(fields::normal);
+  const double dp = walls->spacing();
+  double nearest = 1.5 * dp;
+  Index before = -1;
+  for (Index j = 0; j < walls->size(); ++j) {
+    const Vec<Dim> r = at - y[j];
+    if (const double d = r.norm(); d < nearest && r.dot(normal[j]) < -0.25 * dp) {
+      nearest = d;
+      before = j;
+    }
+  }
+  return before;
+}
+
 /// Where in the deck to look.
 template <int Dim>
 std::string Guard<Dim>::suspect(const ParticleSet<Dim>& set, Index i,
@@ -259,6 +284,13 @@ std::string Guard<Dim>::suspect(const ParticleSet<Dim>& set, Index i,
   if (parameters.body_force &&
       !world_.body_acceleration(set.vector(fields::position)[i]).allFinite()) {
     out += "; body_force is not finite there (" + parameters.body_force_location + ")";
+  } else if (const Index wall_particle = set.name() == "walls" ? -1 : wall_before(set, i);
+             wall_particle >= 0) {
+    const auto b = static_cast<std::size_t>(world_.find("walls")->tag(fields::part)[wall_particle]);
+    out += fmt::format(
+        "; it lies inside of boundary '{}' ({}): likely it started there, or was "
+        "pushed through its surface",
+        parameters.boundaries[b].name, parameters.boundaries[b].location);
   } else if (!look_for.empty()) {
     out += "; likely: " + look_for;
   } else if (world_.clock.advection_steps < 3) {
@@ -290,6 +322,10 @@ void Guard<Dim>::stop(std::string cause, const ParticleSet<Dim>& set, const Fiel
 template <int Dim>
 std::vector<std::pair<std::string, double>> Guard<Dim>::extremes() const {
   std::vector<std::pair<std::string, double>> out{{"max_mach", largest_mach_}};
+  if (world_.find("water")) {
+    out.emplace_back("max_mach_water", water_mach_);
+    out.emplace_back("max_mach_water_time", water_mach_time_);
+  }
   for (std::size_t k = 0; k < bounds_.size(); ++k) {
     if (seen_[k].first > seen_[k].second) continue;
     out.emplace_back(fmt::format("min_{}_{}", bounds_[k].field->name, bounds_[k].set),
@@ -311,11 +347,12 @@ void Guard<Dim>::save(StateSink& sink) const {
   sink.put_number("guard/largest_dt", largest_dt_);
   sink.put_number("guard/largest_solid", largest_solid_);
   sink.put_number("guard/largest_mach", largest_mach_);
+  sink.put_number("guard/water_mach", water_mach_);
+  sink.put_number("guard/water_mach_time", water_mach_time_);
   std::vector<double> flat;
   for (const auto& [low, high] : seen_) flat.insert(flat.end(), {low, high});
   sink.put("guard/seen", flat);
-  sink.put_number("guard/seconds", spent_.seconds);
-  sink.put_number("guard/processor_seconds", spent_.processor);
+  put_spent(sink, "guard/spent", spent_);
   sink.put_count("guard/calls", calls_);
 }
 
@@ -328,10 +365,12 @@ void Guard<Dim>::load(const StateSource& source) {
   largest_dt_ = source.number("guard/largest_dt");
   largest_solid_ = source.has("guard/largest_solid") ? source.number("guard/largest_solid") : 0;
   largest_mach_ = source.number("guard/largest_mach");
+  water_mach_ = source.number("guard/water_mach");
+  water_mach_time_ = source.number("guard/water_mach_time");
   std::vector<double> flat(2 * seen_.size());
   source.get("guard/seen", std::span<double>(flat));
   for (std::size_t k = 0; k < seen_.size(); ++k) seen_[k] = {flat[2 * k], flat[2 * k + 1]};
-  spent_ = {source.number("guard/seconds"), source.number("guard/processor_seconds")};
+  spent_ = spent_of(source, "guard/spent");
   calls_ = source.count("guard/calls");
 }
 

@@ -51,6 +51,7 @@ class Guard {
   [[noreturn]] void stop(std::string cause, const ParticleSet<Dim>& set, const FieldSpec& field,
                          Index i, const std::string& what, const std::string& look_for);
   std::string writer_of(const std::string& set, const FieldSpec& field) const;
+  Index wall_before(const ParticleSet<Dim>& set, Index i) const;
   std::string suspect(const ParticleSet<Dim>& set, Index i, const std::string& look_for) const;
 
   const World<Dim>& world_;
@@ -61,7 +62,8 @@ class Guard {
   std::map<std::string, Index> in_walls_;  ///< at the latest count, by set
   double largest_dt_ = 0;
   double largest_solid_ = 0;
-  double largest_mach_ = 0;
+  double largest_mach_ = 0, water_mach_ = 0;
+  double water_mach_time_ = 0;                   ///< when, s
   std::vector<std::pair<double, double>> seen_;  ///< smallest and largest value of each bound
   Spent spent_;
   long calls_ = 0;

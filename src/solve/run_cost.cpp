@@ -118,29 +118,34 @@ void StepTimer<Dim>::begin() {
   between_ = between();
   acoustic_ = world_.clock.acoustic_steps;
   begun_ = clock::now();
+  watch_.emplace();
 }
 
 template <int Dim>
 void StepTimer<Dim>::end() {
   if (!begun_) return;
   const double all = std::chrono::duration<double>(clock::now() - *begun_).count();
+  samples_.push_back(
+      {all, between() - between_, watch_->seconds(), world_.clock.acoustic_steps - acoustic_});
   begun_.reset();
+  watch_.reset();
   seconds_ += all;
-  samples_.push_back({all, between() - between_, world_.clock.acoustic_steps - acoustic_});
 }
 
 template <int Dim>
 std::optional<StepCost> StepTimer<Dim>::cost() const {
-  double all = 0, between = 0;
+  double all = 0, between = 0, quiet = 0;
   long acoustic = 0;
   for (std::size_t k = 1; k < samples_.size(); ++k) {
     all += samples_[k].all;
     between += samples_[k].between;
+    quiet += samples_[k].quiet;
     acoustic += samples_[k].acoustic_steps;
   }
-  if (acoustic == 0) return std::nullopt;
-  return StepCost{between / static_cast<double>(samples_.size() - 1),
-                  (all - between) / static_cast<double>(acoustic)};
+  if (acoustic == 0 || !(quiet > 0)) return std::nullopt;
+  const double slowdown = all / quiet;
+  return StepCost{between / static_cast<double>(samples_.size() - 1) / slowdown,
+                  (all - between) / static_cast<double>(acoustic) / slowdown, slowdown};
 }
 
 template <int Dim>

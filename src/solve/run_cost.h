@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/stopwatch.h"
 #include "scene/build.h"
 #include "scene/particle_count.h"
 #include "solve/stepper.h"
@@ -45,15 +46,16 @@ double typical_speed(const World<Dim>& world, const SoundSpeed& sound);
 template <int Dim>
 StepCounts expected_steps(World<Dim>& world, const Plan<Dim>& plan, double speed, double duration);
 
-/// Seconds of wall time.
+/// Seconds of wall time, on a machine with nothing else to do.
 struct StepCost {
   double advection = 0;  ///< of a rearrangement with its reinitialization
   double acoustic = 0;   ///< of an acoustic step
+  double slowdown = 1;   ///< by what else the machine did: wall time as it was over that
   double of(const StepCounts& n) const { return n.advection * advection + n.acoustic * acoustic; }
 };
 
-/// Times advection steps. The first one is left out, as its memory is not in caches; the mean of
-/// the others includes the waiting on a busy machine, as a run does.
+/// Times advection steps, by processor time: a forecast made on a busy machine is not worse. The
+/// first one is left out, as its memory is not in caches.
 template <int Dim>
 class StepTimer {
  public:
@@ -76,13 +78,15 @@ class StepTimer {
   double between() const;
 
   struct Sample {
-    double all, between;
+    double all, between;  ///< wall time, s
+    double quiet;
     long acoustic_steps;
   };
   const World<Dim>& world_;
   const Plan<Dim>& plan_;
   const Stepper<Dim>& stepper_;
   std::optional<clock::time_point> begun_;
+  std::optional<QuietWatch> watch_;
   double between_ = 0, seconds_ = 0;
   long acoustic_ = 0;
   std::vector<Sample> samples_;

@@ -95,8 +95,7 @@ void Stepper<Dim>::solid_steps(double dt, double limit) {
 
 template <int Dim>
 void Stepper<Dim>::save(StateSink& sink) const {
-  sink.put_number("stepper/seconds_rearranging", rearranging_.seconds);
-  sink.put_number("stepper/processor_seconds_rearranging", rearranging_.processor);
+  put_spent(sink, "stepper/rearranging", rearranging_);
   sink.put_number("stepper/particle_updates", particle_updates_);
   sink.put_count("stepper/rearrangements", rearrangements_);
   guard_.save(sink);
@@ -109,8 +108,7 @@ void Stepper<Dim>::save(StateSink& sink) const {
 
 template <int Dim>
 void Stepper<Dim>::load(const StateSource& source) {
-  rearranging_ = {source.number("stepper/seconds_rearranging"),
-                  source.number("stepper/processor_seconds_rearranging")};
+  rearranging_ = spent_of(source, "stepper/rearranging");
   particle_updates_ = source.number("stepper/particle_updates");
   rearrangements_ = source.count("stepper/rearrangements");
   guard_.load(source);

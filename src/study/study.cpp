@@ -24,6 +24,15 @@ RecordedResult recorded(const Json& row) {
           text_at(row, "/note")};
 }
 
+/// Why a run has no value of a claim.
+std::string why_not(const RunOutcome& record, const RecordedResult* r) {
+  if (record.status == "missing") return "it has no summary";
+  if (record.status != "done")
+    return record.status + (record.message.empty() ? "" : ", " + record.message);
+  if (r == nullptr) return "its deck does not claim this";
+  return r->note.empty() ? "it could not be measured" : r->note;
+}
+
 /// The runs of a curve that have the claim; coarsest first where spacings differ.
 StudyResult gather(const Study& study, const StudyCurve& curve, const StudyClaim& claim) {
   StudyResult result;
@@ -33,6 +42,7 @@ StudyResult gather(const Study& study, const StudyCurve& curve, const StudyClaim
     const StudyRun& run = study.runs[k];
     const RecordedResult* r = run.record.result(claim.name);
     if (run.record.status == "done" && r != nullptr && r->value) result.runs.push_back(&run);
+    else result.left_out.push_back(setting_of(run, curve.key) + ": " + why_not(run.record, r));
   }
   std::vector<const StudyRun*> sorted = result.runs;
   std::stable_sort(sorted.begin(), sorted.end(),
@@ -144,9 +154,12 @@ std::vector<StudyResult> study_results(const Study& study) {
     const std::size_t first = results.size();
     for (const StudyCurve& curve : study.design.curves) {
       StudyResult result = gather(study, curve, claim);
-      if (result.runs.empty()) continue;
-      judge(result, claim);
-      price(result, claim);
+      if (result.runs.empty()) {
+        result.price = "no run has a value of it";
+      } else {
+        judge(result, claim);
+        price(result, claim);
+      }
       results.push_back(std::move(result));
     }
     // Errors against different runs cannot be compared.

@@ -63,12 +63,17 @@ struct StudyResult {
   std::vector<const StudyRun*>
       runs;  ///< done and with a value; coarsest first where spacings differ
   std::vector<RecordedResult> values;  ///< of these runs
+  std::vector<std::string> left_out;   ///< settings and why: a run that failed or has no such value
   std::vector<std::optional<double>> errors;
   std::string error_against;  ///< "the reference", "the finest run", or empty
   bool by_spacing = false;    ///< whether all spacings differ, so that there is an order
   Convergence convergence;    ///< by_spacing only
   std::vector<bool> worth;    ///< on the Pareto front of all curves of this result
   std::string price;          ///< the sentence
+
+  std::optional<double> reference() const {
+    return values.empty() ? std::nullopt : values.front().reference;
+  }
 };
 
 struct Study {

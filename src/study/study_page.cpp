@@ -98,14 +98,19 @@ std::string result_section(Curves curves, const StudyClaim& claim) {
   for (const StudyResult& r : curves) {
     if (curves.size() > 1) html += "<h3>" + html_escaped(curve_name(r)) + "</h3>\n";
     html += "<p><strong>" + html_escaped(r.price) + ".</strong></p>\n";
-    html += result_table(r, claim);
+    if (!r.runs.empty()) html += result_table(r, claim);
+    for (const std::string& run : r.left_out)
+      html += "<p class=\"quiet\">left out: " + html_escaped(run) + "</p>\n";
     if (r.by_spacing)
       html += "<p class=\"quiet\">" + html_escaped(convergence_text(r.convergence)) + "</p>\n";
   }
   std::string title = html_escaped(claim.name);
-  if (const auto& reference = curves.front().values.front().reference)
+  if (const auto reference = curves.front().reference())
     title += " <small>reference " + number_text(*reference, 6) + "</small>";
-  return section(title, "<div class=\"charts\">" + diagram(curves, claim) + "</div>\n" + html);
+  const bool drawn = std::any_of(curves.begin(), curves.end(),
+                                 [](const StudyResult& r) { return !r.runs.empty(); });
+  return section(
+      title, (drawn ? "<div class=\"charts\">" + diagram(curves, claim) + "</div>\n" : "") + html);
 }
 
 std::string runs_table(const Study& study) {

@@ -95,7 +95,7 @@ Json to_json(const Study& study, const std::vector<StudyResult>& results) {
     const StudyClaim& claim = claim_of(study, r.name);
     Json row = {{"name", r.name}, {"key", r.curve->key}};
     if (!r.curve->others.empty()) row["settings"] = settings_json(r.curve->others);
-    row["reference"] = number(r.values.front().reference);
+    row["reference"] = number(r.reference());
     row["tolerance"] = claim.tolerance;
     row["error_kind"] = claim.relative ? "relative" : "absolute";
     row["error_against"] = r.error_against;
@@ -115,6 +115,7 @@ Json to_json(const Study& study, const std::vector<StudyResult>& results) {
                                {"memory_peak_bytes", run.record.memory_bytes},
                                {"folder", run.folder}});
     }
+    row["left_out"] = r.left_out;
     row["order"] = number(r.convergence.order);
     row["order_from"] = r.convergence.order_from;
     row["richardson"] = number(r.convergence.extrapolated);
@@ -136,8 +137,7 @@ std::string render_study(const Study& study, const std::vector<StudyResult>& res
   for (const StudyResult& r : results) {
     const StudyClaim& claim = claim_of(study, r.name);
     out += fmt::format("\n{}", printable(r.name));
-    if (r.values.front().reference)
-      out += fmt::format(", reference {:.6g}", *r.values.front().reference);
+    if (r.reference()) out += fmt::format(", reference {:.6g}", *r.reference());
     if (claim.tolerance > 0)
       out += fmt::format(", tolerance {}", error_cell(claim.tolerance, claim.relative));
     if (!r.curve->others.empty()) out += ", " + printable(settings_text(r.curve->others));
@@ -157,6 +157,7 @@ std::string render_study(const Study& study, const std::vector<StudyResult>& res
           record.forecast_wall_s ? seconds_text(*record.forecast_wall_s) : "-", record.particles,
           record.acoustic_steps, bytes_text(record.memory_bytes), r.worth[k] ? "  *" : "");
     }
+    for (const std::string& run : r.left_out) out += "  left out: " + printable(run) + "\n";
     if (r.by_spacing) out += "  " + convergence_text(r.convergence) + "\n";
     out += "  " + r.price + "\n";
   }

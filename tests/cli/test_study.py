@@ -109,6 +109,22 @@ class Study(ProgramTest):
         done = self.study("--vary", "numerics.cfl_acoustic=0.4,0.2", "--set", "g=4000", expected=3)
         self.assertIn(b"unstable", done.stdout)
 
+    def test_what_cannot_be_measured_is_said(self):
+        """A result that some runs do not have, and one that none has, are in the tables, with the reason."""
+        self.write("some.yaml", FALL + """\
+  - {name: early, probe: PROBE, reduce: at, at: 0.05, measure: below, tolerance: 1e9}
+  - {name: never, probe: PROBE, reduce: at, at: 1e3, measure: below, tolerance: 1e9}
+""".replace("PROBE", "energy.total"))
+        done = self.call("study", "some.yaml", "-o", "s", "-q", "--vary", "end_time=0.02,0.1")
+        text = done.stdout.decode()
+        self.assertIn("left out: 0.02:", text, done.stderr)
+        never = text[text.index("\nnever"):]
+        self.assertIn("no run has a value of it", never)
+        self.assertEqual(never.count("left out:"), 2)
+        # Twice the last one, and the short run lacks the other two that ask for later times.
+        page = (self.here / "s/study.html").read_text()
+        self.assertEqual(page.count("left out: "), 4)
+
 
 class Compare(ProgramTest):
     def setUp(self):

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <thread>
 
+#include "support/memory_state.h"
+
 using namespace sphgeo;
 
 namespace {
@@ -43,6 +45,45 @@ TEST_SUITE("core") {
       CHECK(spent.processor <= n * spent.seconds + 1e-3);
     }
     set_threads(before);
+  }
+
+  TEST_CASE("a quiet watch divides the loops among the threads, and nothing else") {
+    const int before = threads();
+    for (const int n : {1, 3}) {
+      set_threads(n);
+      const QuietWatch quiet;
+      const double shared = shared_processor_seconds(), all = loop_processor_seconds();
+      work();
+      parallel_blocks(12, 1, [&](Index, Index, Index) { work(); });
+      const double loops = shared_processor_seconds() - shared,
+                   whole = loop_processor_seconds() - all;
+      if (n == 1) CHECK(loops == 0);
+      else CHECK(loops > 0.5 * whole);  // 12 of 13 parts
+      CHECK(quiet.seconds() >= whole - loops * (1 - 1.0 / n) - 1e-3);
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      CHECK(quiet.seconds() < whole - loops * (1 - 1.0 / n) + 0.02);
+    }
+    set_threads(before);
+  }
+
+  TEST_CASE("what was spent with one thread and then with three is busy by what each had") {
+    const int before = threads();
+    Spent spent;
+    for (const int n : {1, 3}) {
+      set_threads(n);
+      const Stopwatch watch(spent);
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    set_threads(before);
+    CHECK(spent.offered >= 1 * 0.02 + 3 * 0.02);
+    CHECK(spent.offered < 3 * spent.seconds);
+    spent.processor = 0.5 * spent.offered;
+    CHECK(spent.busy() == 0.5);
+    CHECK(Spent{}.busy() == 0);
+    test::MemoryState state;
+    put_spent(state, "spent", spent);
+    CHECK(spent_of(state, "spent").busy() == 0.5);
+    CHECK(spent_of(state, "spent").seconds == spent.seconds);
   }
 
   TEST_CASE("waiting is no processor time") {

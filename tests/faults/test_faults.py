@@ -73,7 +73,7 @@ class Faults(unittest.TestCase):
             elif path.suffix == ".json":
                 json.loads(data)
             elif path.suffix == ".h5":
-                mark = b"\nsphgeo checkpoint 4 "
+                mark = b"\nsphgeo checkpoint 5 "
                 self.assertTrue(data[-72:].startswith(mark), name)
                 self.assertEqual(int(data[-72 + len(mark):][:16], 16), len(data) - 72, name)
             elif path.suffix == ".html":

@@ -93,6 +93,16 @@ TEST_SUITE("output") {
     CHECK_THROWS_AS(CsvWriter("/dev/full", "t", columns), IoError);
   }
 
+  TEST_CASE("a file that is removed while it grows is said to be lost") {
+    const test::TemporaryFolder folder;
+    CsvWriter csv(folder / "a.csv", "t", columns);
+    csv.row(Row{0, 1, 2});
+    csv.flush(true);
+    std::filesystem::remove(folder / "a.csv");
+    csv.row(Row{1, 2, 3});
+    CHECK_THROWS_WITH_AS(csv.flush(true), doctest::Contains("was removed while"), IoError);
+  }
+
   TEST_CASE("a series keeps and writes its samples") {
     const test::TemporaryFolder folder;
     Series series("gauge", {{"p", "Pa", "pressure"}, {"level", "m", "water level"}});

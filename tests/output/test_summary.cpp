@@ -15,9 +15,13 @@ using namespace sphgeo;
 
 TEST_SUITE("output") {
   TEST_CASE("the time table adds up to the wall time") {
+    // On two threads; the wall time, the processors' and what the threads had.
+    const auto spent = [](double seconds, double processor) {
+      return Spent{.seconds = seconds, .processor = processor, .offered = 2 * seconds};
+    };
     const std::vector<TimeRow> rows = with_rest(
-        {{"b", 4, {1.0, 2.0}}, {"a", 2, {1.0, 1.0}}, {"never", 0, {}}, {"big", 8, {6.0, 9.0}}},
-        {10, 15}, 2);
+        {{"b", 4, spent(1, 2)}, {"a", 2, spent(1, 1)}, {"never", 0, {}}, {"big", 8, spent(6, 9)}},
+        spent(10, 15));
     REQUIRE(rows.size() == 4);
     CHECK(rows[0].name == "big");
     CHECK(rows[1].name == "a");
@@ -26,14 +30,14 @@ TEST_SUITE("output") {
     double share = 0;
     for (const TimeRow& r : rows) share += r.share;
     CHECK(share == doctest::Approx(1));
-    CHECK(render_time_table(rows, 2) ==
+    CHECK(render_time_table(rows) ==
           "  effect       calls     seconds    share     busy\n"
           "  big              8       6.000   60.0 %   75.0 %\n"
           "  a                2       1.000   10.0 %   50.0 %\n"
           "  b                4       1.000   10.0 %  100.0 %\n"
           "  rest                     2.000   20.0 %   75.0 %\n"
           "  total                   10.000  100.0 %   75.0 %\n");
-    CHECK(with_rest({}, {}, 1).size() == 1);
+    CHECK(with_rest({}, {}).size() == 1);
   }
 
   TEST_CASE("summary.json has every promised key, and null for what is not finite") {
@@ -47,7 +51,7 @@ TEST_SUITE("output") {
     s.acoustic_steps = 12;
     s.time_s = 0.25;
     s.particle_updates_per_s_per_core = std::nan("");
-    s.effects = with_rest({{"density", 12, {1, 1}}}, {2, 2}, 2);
+    s.effects = with_rest({{"density", 12, {1, 1}}}, {2, 2});
     ExpectResult e;
     e.name = "level";
     e.reference = 1;

@@ -243,4 +243,17 @@ TEST_SUITE("scene") {
             "  - {name: next, type: tank, min: [1, 0, 0], max: [2, 0.4, 0.8], open: [top, left]}\n")
             .found.empty());
   }
+
+  TEST_CASE("an open face that another wall closes is not the one through which water runs out") {
+    // Both tanks have a bottom between them, the first one none; the right side is open.
+    const Leaks l = leaks<2>(
+        "bodies: [{name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [1, 0.2, "
+        "0.3]}}]\nboundaries:\n"
+        "  - {name: sides, type: tank, min: [0, 0, 0], max: [1, 0.2, 0.5], open: [bottom, right, "
+        "top]}\n"
+        "  - {name: floor, type: tank, min: [0, 0, 0], max: [1, 0.2, 0.5], open: [left, right, "
+        "top]}\n");
+    REQUIRE(l.found.size() == 1);
+    CHECK(l.message.find("'right'") != std::string::npos);
+  }
 }

@@ -65,6 +65,67 @@ TEST_SUITE("scene") {
           Ids{"W122"});
   }
 
+  TEST_CASE("a wall that holds one layer only is said to leak, however it is described") {
+    const auto plate = [](double thickness) {
+      return pool + ground +
+             wall("plate", box("0.5, 0, 0", std::to_string(0.5 + thickness) + ", 1, 0.5"));
+    };
+    CHECK(findings(plate(0.05)) == Ids{"W149"});
+    CHECK(findings<3>(plate(0.05)) == Ids{"W149"});
+    CHECK(findings(plate(0.1)).empty());
+    CHECK(findings(pool + ground +
+                   wall("plate",
+                        "{type: polygon, points: [[0.5, 0, 0], [0.55, 0, 0], [0.55, 0, 0.5], "
+                        "[0.5, 0, 0.5]], y_min: 0, y_max: 1}")) == Ids{"W149"});
+    CHECK(
+        findings(pool + ground +
+                 wall("plate", "{type: transform, rotate: 30 deg, translate: [0.7, 0, 0.1], of: " +
+                                   box("0, 0, 0", "0.06, 1, 0.5") + "}")) == Ids{"W149"});
+    // Two halves of one wall are as thick as both; a wedge is thin at its tip only.
+    CHECK(findings(pool + ground + wall("left", box("0.5, 0, 0", "0.55, 1, 0.5")) +
+                   wall("right", box("0.55, 0, 0", "0.6, 1, 0.5")))
+              .empty());
+    CHECK(findings(pool + ground +
+                   wall("wedge",
+                        "{type: polygon, points: [[0.5, 0, 0], [1.3, 0, 0], [1.3, 0, 0.5]], "
+                        "y_min: 0, y_max: 1}"))
+              .empty());
+    CHECK(
+        findings(pool + "boundaries: [{name: sides, type: tank, min: [0, 0, 0], max: [1, 1, 1]}]\n")
+            .empty());
+  }
+
+  TEST_CASE("an inlet that nothing closes from behind is told, unless water falls from it") {
+    const auto inlet = [](const std::string& min, const std::string& max, const std::string& v) {
+      return pool + ground + "  - {name: jet, type: inlet, min: [" + min + "], max: [" + max +
+             "], velocity: [" + v + "]}\n";
+    };
+    const std::string beside = inlet("0, 0, 0.3", "0, 0.2, 0.5", "1, 0, 0");
+    CHECK(findings(beside) == Ids{"N153"});
+    CHECK(findings(inlet("0.1, 0, 0.6", "0.3, 0.2, 0.6", "0, 0, -1")).empty());
+    CHECK(findings(inlet("0.1, 0, 0", "0.3, 0.2, 0", "0, 0, 1")).empty());  // the floor
+    CHECK(findings(beside + wall("back", box("-0.3, 0, 0", "-0.05, 1, 0.6"))).empty());
+    CHECK(findings(beside + wall("half", box("-0.3, 0, 0", "-0.05, 1, 0.4"))) == Ids{"N153"});
+  }
+
+  TEST_CASE("soil and bodies deep in a solid are found as water is") {
+    for (const std::string material :
+         {"{name: it, type: soil, density: 2600, volume_fraction: 0.6, youngs_modulus: 1e6, "
+          "friction_angle: 30 deg}",
+          "{name: it, type: rigid, density: 2500}"}) {
+      const Model model = read_deck_text(
+          "dimension: 2\nresolution: 0.05\nend_time: 1\nmaterials: [" + material +
+          "]\nbodies: [{name: it, material: it, shape: " + box("0, 0, 0", "0.5, 1, 0.3") +
+          "}]\nboundaries:\n" + wall("rock", box("-1, -1, -1", "2, 2, 2")));
+      Diagnostics found;
+      const Scene<2> scene = build_scene<2>(model, found);
+      check_walls(scene, found);
+      REQUIRE(found.items().size() == 1);
+      CHECK(found.items()[0].id == "E121");
+      CHECK(found.items()[0].path == "bodies[0].shape");
+    }
+  }
+
   TEST_CASE("water deep in a solid is found, where no wall particle is") {
     CHECK(findings(pool + "boundaries:\n" + wall("rock", box("-1, -1, -1", "2, 2, 2"))) ==
           Ids{"E121"});
