@@ -59,8 +59,9 @@ void check_frames(const Model& model, Diagnostics& found) {
   for (std::size_t k = 0; k < asked.size(); ++k) {
     if (std::find(names.begin(), names.end(), asked[k]) != names.end()) continue;
     const std::string path = fmt::format("output.frames.fields[{}]", k);
+    const std::string near = suggestion(asked[k], names);
     found.error("E152", model.place_of(path), path, fmt::format("there is no field '{}'", asked[k]),
-                suggestion(asked[k], names, "fields"));
+                near.empty() ? "'sphgeo list' prints all fields" : near);
   }
 }
 
