@@ -2,9 +2,12 @@
 
 #include <fcntl.h>
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
+
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -99,6 +102,23 @@ CLI::Validator above_zero(const std::string& what) {
       "", "above zero");
 }
 
+/// More than any machine has; each takes memory and an entry of the system's table.
+constexpr int most_threads = 1024;
+
+/// A number of threads that can be asked for.
+CLI::Validator thread_count() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        double n = 0;
+        const char* end = text.data() + text.size();
+        const auto [stop, problem] = std::from_chars(text.data(), end, n);
+        if (problem != std::errc{} || stop != end || !(n >= 1) || n != std::floor(n))
+          return "'" + text + "' is not a whole number above 0";
+        return n <= most_threads ? "" : fmt::format("'{}': at most {} threads", text, most_threads);
+      },
+      "", "threads");
+}
+
 int lost_output(int error_number) {
   std::cerr << "error: cannot write to standard output: " << std::strerror(error_number) << "\n";
   return static_cast<int>(ExitCode::io);
@@ -175,7 +195,7 @@ int main(int argc, char** argv) {
       ->type_name("DIR");
   run_app
       ->add_option("--threads", run.threads, "number of threads (default: what the scene can use)")
-      ->check(whole)
+      ->check(thread_count())
       ->type_name("N");
   CLI::Option* overwrite =
       run_app->add_flag("--overwrite", run.overwrite, "replace the results in the folder");
@@ -215,7 +235,7 @@ int main(int argc, char** argv) {
       "--no-calibrate", [&] { check.calibrate = false; },
       "do not time a few steps: no forecast of the time");
   check_app->add_option("--threads", check.threads, "number of threads of the forecast run")
-      ->check(whole)
+      ->check(thread_count())
       ->type_name("N");
   check_app->callback([&] { code = run_guarded([&] { return check_command(check); }); });
 
@@ -227,7 +247,7 @@ int main(int argc, char** argv) {
       ->required()
       ->type_name("DIR");
   relax_app->add_option("--threads", relax.threads, "number of threads (default: all)")
-      ->check(whole)
+      ->check(thread_count())
       ->type_name("N");
   relax_app->add_flag("--overwrite", relax.overwrite, "replace the results in the folder");
   relax_app->add_flag("--verify", relax.verify,
@@ -273,7 +293,7 @@ int main(int argc, char** argv) {
       ->check(whole)
       ->type_name("N");
   study_app->add_option("--threads", study.threads, "number of threads of each run")
-      ->check(whole)
+      ->check(thread_count())
       ->type_name("N");
   study_app
       ->add_option("--max-hours", study.max_hours, "stop, resumable, before this wall time is over")

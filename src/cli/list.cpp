@@ -93,11 +93,9 @@ int show_command(const std::string& name) {
       between = "\n";
     }
   if (*between != '\0') return 0;
-  const std::string near = nearest_name(name, names);
-  throw Error(ExitCode::usage,
-              near.empty()
-                  ? fmt::format("there is no type '{}'; 'sphgeo list' prints them all", name)
-                  : fmt::format("there is no type '{}'; did you mean '{}'?", name, near));
+  const std::string near = suggestion(name, names);
+  throw Error(ExitCode::usage, fmt::format("there is no type '{}'; {}", name,
+                                           near.empty() ? "'sphgeo list' prints them all" : near));
 }
 
 int reference_command() {

@@ -7,6 +7,8 @@
 #include <csignal>
 #include <utility>
 
+#include "core/unfinished_files.h"
+
 namespace sphgeo {
 namespace {
 
@@ -18,6 +20,7 @@ void on_signal(int number) {
   last_signal = number;
   signals_seen = signals_seen + 1;
   if (signals_seen < 3) return;
+  remove_unfinished_files();
   ::signal(number, SIG_DFL);
   ::raise(number);
 }

@@ -89,9 +89,11 @@ void write_all(int descriptor, const void* data, std::size_t bytes, const std::s
 }
 
 AtomicFile::AtomicFile(std::string path, std::uint64_t expected_bytes)
-    : path_(std::move(path)), expected_bytes_(expected_bytes) {
-  const bool direct = is_special(path_);
-  if (!direct) temporary_ = path_ + ".part";
+    : path_(std::move(path)),
+      temporary_(is_special(path_) ? "" : path_ + ".part"),
+      unfinished_(temporary_),
+      expected_bytes_(expected_bytes) {
+  const bool direct = temporary_.empty();
   const std::string& target = direct ? path_ : temporary_;
   const int flags = O_WRONLY | O_CLOEXEC | (direct ? 0 : O_CREAT | O_TRUNC);
   descriptor_ = ::open(target.c_str(), flags, 0666);

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "core/unfinished_files.h"
+
 namespace sphgeo {
 
 /// Writes all bytes to an open file descriptor. Throws IoError with the path and the system's
@@ -17,7 +19,8 @@ void write_all(int descriptor, const void* data, std::size_t bytes, const std::s
                                  int error_number);
 
 /// A file written under a temporary name beside its final one. Only commit() makes it visible;
-/// without it the destructor removes the temporary file, so that no half-written file stays.
+/// without it the destructor removes the temporary file, so that no half-written file stays;
+/// remove_unfinished_files() does so when a signal ends the program.
 /// A path that is not a regular file (a pipe, /dev/stdout) is written to directly.
 /// Every failure is an IoError with the path, the bytes needed and the system's message.
 class AtomicFile {
@@ -43,6 +46,7 @@ class AtomicFile {
 
   std::string path_;
   std::string temporary_;  ///< empty when written to directly
+  UnfinishedFile unfinished_;
   std::string buffer_;
   std::uint64_t expected_bytes_;
   std::uint64_t written_ = 0;

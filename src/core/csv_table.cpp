@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <set>
 
 #include "core/atomic_file.h"
+#include "core/decimal.h"
+#include "core/text.h"
 
 namespace sphgeo {
 
@@ -24,27 +25,47 @@ std::string_view trim(std::string_view s) {
   return s.substr(first, s.find_last_not_of(" \t\r") - first + 1);
 }
 
-/// A finite number, NaN for "no value", nothing for other text. Independent of the locale.
+bool is_digit(std::string_view s, std::size_t k) {
+  return k < s.size() && s[k] >= '0' && s[k] <= '9';
+}
+
+/// A finite number, NaN for "no value", nothing for other text.
 std::optional<double> to_number(std::string_view s, bool decimal_comma = false) {
-  if (s.empty() || s == "nan" || s == "NaN") return std::numeric_limits<double>::quiet_NaN();
+  if (s.empty()) return std::numeric_limits<double>::quiet_NaN();
   std::string with_point;
   if (const auto comma = s.find(','); decimal_comma && comma != std::string_view::npos) {
-    const auto digit = [&](std::size_t k) { return k < s.size() && s[k] >= '0' && s[k] <= '9'; };
-    if (s.find('.') != std::string_view::npos || comma == 0 || !digit(comma - 1) ||
-        !digit(comma + 1))
+    if (s.find('.') != std::string_view::npos || comma == 0 || !is_digit(s, comma - 1) ||
+        !is_digit(s, comma + 1))
       return {};
     with_point = s;
     with_point[comma] = '.';
     s = with_point;
   }
-  if (s.front() == '+') {
-    s.remove_prefix(1);
-    if (s.starts_with('-')) return {};
-  }
-  double value = 0;
-  const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), value);
-  if (error != std::errc{} || end != s.data() + s.size() || !std::isfinite(value)) return {};
-  return value;
+  const std::optional<double> value = read_decimal(s);
+  return value && std::isinf(*value) ? std::nullopt : value;
+}
+
+/// Whether the text is a number whose thousands are set off by commas, "1,234.5".
+bool has_thousands(std::string_view s) {
+  if (s.starts_with('-') || s.starts_with('+')) s.remove_prefix(1);
+  auto comma = s.find(',');
+  if (comma == 0 || comma > 3) return false;
+  for (std::size_t k = 0; k < comma; ++k)
+    if (!is_digit(s, k)) return false;
+  for (; comma < s.size() && s[comma] == ','; comma += 4)
+    for (std::size_t k = comma + 1; k < comma + 4; ++k)
+      if (!is_digit(s, k)) return false;
+  return comma >= s.size() || s[comma] == '.';
+}
+
+/// Why a cell is no number, for the user.
+std::string why_no_number(std::string_view cell) {
+  if (has_thousands(cell))
+    return fmt::format("'{}' is not a finite number: leave out the commas between thousands",
+                       shortened(cell, 60));
+  std::string why = why_no_decimal(cell);
+  if (why.find(" write 0") != std::string::npos) return why;
+  return fmt::format("'{}' is not a finite number", shortened(cell, 60));
 }
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
@@ -122,7 +143,7 @@ bool holds(std::string_view line, char wanted) {
 
 /// What separates the cells, by the first row and the one after it. A comma separates unless all
 /// numbers of the row have it as their decimal sign.
-char separator_of(std::string_view first, std::string_view second, const std::string& place) {
+char inner_separator(std::string_view first, std::string_view second, const std::string& place) {
   if (holds(first, ';')) return ';';
   for (const char blank : {'\t', ' '}) {
     if (!holds(first, blank)) continue;
@@ -142,6 +163,12 @@ char separator_of(std::string_view first, std::string_view second, const std::st
   return ',';
 }
 
+/// The same with tabs at the ends of the first row: there they separate where nothing else does.
+char separator_of(std::string_view first, std::string_view second, const std::string& place) {
+  const char inner = inner_separator(trim(first), trim(second), place);
+  return inner == ',' && !holds(first, ',') && holds(first, '\t') ? '\t' : inner;
+}
+
 bool is_comment(std::string_view line) {
   return line.starts_with('#') || line.starts_with('%') || line.starts_with("//");
 }
@@ -151,14 +178,14 @@ class Lines {
  public:
   explicit Lines(std::string_view text) : text_(text) {}
 
-  /// The next line without blanks at its ends; false at the end of the text.
+  /// The next line that is not blank; false at the end of the text.
   bool next(std::string_view& line) {
     while (at_ < text_.size()) {
       const std::size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
-      line = trim(text_.substr(at_, end - at_));
+      line = text_.substr(at_, end - at_);
       at_ = end + (text_.substr(end, 2) == "\r\n" ? 2 : 1);
       ++number_;
-      if (!line.empty()) return true;
+      if (!trim(line).empty()) return true;
     }
     return false;
   }
@@ -170,14 +197,44 @@ class Lines {
   int number_ = 0;
 };
 
-void check_names(const std::vector<std::string>& names, const std::string& place) {
+/// A first row that is mostly numbers is a row of numbers, of which one cannot be read.
+void refuse_bad_number(const std::vector<std::string>& cells, bool decimal_comma,
+                       const std::string& place) {
+  const auto is_number = [&](const std::string& c) {
+    return !c.empty() && to_number(c, decimal_comma).has_value();
+  };
+  const auto numbers = std::count_if(cells.begin(), cells.end(), is_number);
+  if (2 * static_cast<std::size_t>(numbers) < cells.size()) return;
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    if (!to_number(cells[c], decimal_comma))
+      throw TableError(fmt::format("{}: column {}: {}", place, c + 1, why_no_number(cells[c])));
+}
+
+void check_names(const std::vector<std::string>& names, bool decimal_comma,
+                 const std::string& place) {
   std::set<std::string_view> seen;
   for (const std::string& name : names) {
-    if (name.empty()) throw TableError(place + ": a column has no name");
     const std::string_view plain = split_heading(name).name;
-    if (!seen.insert(plain).second)
-      throw TableError(fmt::format("{}: two columns are called '{}'", place, plain));
+    if (!name.empty() && seen.insert(plain).second) continue;
+    refuse_bad_number(names, decimal_comma, place);
+    if (name.empty()) throw TableError(place + ": a column has no name");
+    throw TableError(fmt::format("{}: two columns are called '{}'", place, plain));
   }
+}
+
+/// Separators at the end of a row, as spreadsheets leave them, make no column.
+void drop_empty_end(std::vector<std::string>& cells, std::size_t columns) {
+  while (cells.size() > columns && cells.back().empty()) cells.pop_back();
+}
+
+/// What may have gone wrong in a row with too many cells: ", is 1,234.5 one number?" or nothing.
+std::string thousands_hint(const std::vector<std::string>& cells) {
+  for (std::size_t c = 1; c < cells.size(); ++c) {
+    const std::string joined = cells[c - 1] + "," + cells[c];
+    if (has_thousands(joined))
+      return fmt::format("; if '{}' is one number, leave out the comma between thousands", joined);
+  }
+  return {};
 }
 
 void check_encoding(std::string_view& text, const std::string& path) {
@@ -203,24 +260,27 @@ CsvTable parse_csv_table(std::string_view text, const std::string& path, std::si
   table.path_ = path;
   Lines lines(text);
   char separator = 0;
+  std::size_t nameless = 0;  // cells of the row of names, those without one at its end included
   for (std::string_view line; lines.next(line);) {
-    if (is_comment(line)) {
-      table.comments_.emplace_back(trim(line.substr(line.front() == '/' ? 2 : 1)));
+    if (const std::string_view words = trim(line); is_comment(words)) {
+      table.comments_.emplace_back(trim(words.substr(words.front() == '/' ? 2 : 1)));
       continue;
     }
     const std::string place = fmt::format("{}:{}", path, lines.number());
     if (table.names_.empty()) {
       Lines ahead = lines;
       std::string_view second;
-      while (ahead.next(second) && is_comment(second)) second = {};
+      while (ahead.next(second) && is_comment(trim(second))) second = {};
       separator = separator_of(line, second, place);
       table.decimal_comma_ = separator != ',';
     }
-    std::vector<std::string> cells = split(line, separator, place);
+    std::vector<std::string> cells = split(separator == ' ' ? trim(line) : line, separator, place);
     if (table.names_.empty()) {
       if (!all_numbers(cells, table.decimal_comma_)) {
         if (separator == ' ') cells = join_units(std::move(cells));
-        check_names(cells, place);
+        nameless = cells.size();
+        drop_empty_end(cells, 1);
+        check_names(cells, table.decimal_comma_, place);
         table.cells_.resize(cells.size());
         table.names_ = std::move(cells);
         table.header_line_ = lines.number();
@@ -229,13 +289,26 @@ CsvTable parse_csv_table(std::string_view text, const std::string& path, std::si
       table.cells_.resize(cells.size());
       for (std::size_t i = 1; i <= cells.size(); ++i) table.names_.push_back(std::to_string(i));
     }
+    drop_empty_end(cells, table.names_.size());
+    if (cells.size() > table.names_.size() && cells.size() <= nameless)
+      throw TableError(table.header_place() + ": a column has no name");
     if (cells.size() != table.names_.size())
-      throw TableError(fmt::format("{}: {} cells, but there are {} columns", place, cells.size(),
-                                   table.names_.size()));
+      throw TableError(fmt::format(
+          "{}: {} cells, but there are {} columns{}", place, cells.size(), table.names_.size(),
+          cells.size() > table.names_.size() ? thousands_hint(cells) : ""));
+    if (table.named() &&
+        std::all_of(cells.begin(), cells.end(), [](const std::string& c) { return c.empty(); }))
+      continue;  // an empty row of a spreadsheet; in a grid it is a row of holes
     if ((table.lines_.size() + 1) * cells.size() > max_cells)
       throw TableError(fmt::format("{}: more than {} cells", place, max_cells));
     for (std::size_t c = 0; c < cells.size(); ++c) table.cells_[c].push_back(std::move(cells[c]));
     table.lines_.push_back(lines.number());
+  }
+  const auto is_empty = [](const std::string& c) { return c.empty(); };
+  while (!table.named() && table.cells_.size() > 1 &&
+         std::all_of(table.cells_.back().begin(), table.cells_.back().end(), is_empty)) {
+    table.cells_.pop_back();
+    table.names_.pop_back();
   }
   if (table.names_.empty()) throw TableError(path + ": the table has no row of column names");
   return table;
@@ -257,6 +330,10 @@ std::string CsvTable::place(std::size_t row) const {
 
 std::string CsvTable::header_place() const { return fmt::format("{}:{}", path_, header_line_); }
 
+void CsvTable::check_headings() const {
+  if (named()) refuse_bad_number(names_, decimal_comma_, header_place());
+}
+
 std::size_t CsvTable::index(std::string_view name) const {
   for (std::size_t c = 0; c < names_.size(); ++c)
     if (names_[c] == name) return c;
@@ -277,8 +354,7 @@ std::vector<double> CsvTable::numbers(std::string_view name) const {
   for (std::size_t r = 0; r < cells.size(); ++r) {
     const std::optional<double> value = to_number(cells[r], decimal_comma_);
     if (!value)
-      throw TableError(
-          fmt::format("{}: column '{}': '{}' is not a finite number", place(r), name, cells[r]));
+      throw TableError(fmt::format("{}: column '{}': {}", place(r), name, why_no_number(cells[r])));
     values.push_back(*value);
   }
   return values;

@@ -27,7 +27,8 @@ Heading split_heading(std::string_view heading);
 /// Cells are separated by semicolons, tabs, commas or blanks, by what the first row shows, and may
 /// be quoted; where no comma separates them, numbers may have a decimal comma. Lines end in LF, CR
 /// LF or CR. An empty cell and `nan` mean "no value" (NaN). When the first row holds numbers only,
-/// there are no names and the columns are called "1", "2", ...
+/// there are no names and the columns are called "1", "2", ... Separators at the end of rows make
+/// no column, and a row of empty cells below names is no row.
 class CsvTable {
  public:
   /// All column names, as written (a unit in brackets included).
@@ -41,6 +42,10 @@ class CsvTable {
   std::string place(std::size_t row) const;
   std::string header_place() const;
   const std::string& path() const { return path_; }
+
+  /// Throws TableError when most column names are numbers: then the first row is one of numbers, of
+  /// which one cannot be read, and the message says which.
+  void check_headings() const;
 
   /// Whether there is such a column; "p" finds "p" and "p [Pa]".
   bool has(std::string_view name) const;

@@ -87,10 +87,51 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   return found;
 }
 
+namespace {
+
+// The candidates that begin with the name, or, where none does, those that share a word of it
+// between underscores: "skin_state" and "interface_state".
+std::vector<std::string> related_names(std::string_view name,
+                                       const std::vector<std::string>& candidates) {
+  constexpr std::size_t shortest = 4;  // of a word that tells something
+  const auto collect = [&](auto&& fits) {
+    std::vector<std::string> found;
+    for (const std::string& c : candidates)
+      if (fits(c) && std::find(found.begin(), found.end(), c) == found.end()) found.push_back(c);
+    return found;
+  };
+  if (name.size() >= shortest)
+    if (auto found = collect([&](const std::string& c) { return c.starts_with(name); });
+        !found.empty())
+      return found;
+  const auto words = [](std::string_view text) {
+    std::vector<std::string_view> out;
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = std::min(text.find_first_of("_-", at), text.size());
+      if (end - at >= shortest) out.push_back(text.substr(at, end - at));
+      at = end + 1;
+    }
+    return out;
+  };
+  const auto wanted = words(name);
+  return collect([&](const std::string& c) {
+    const auto own = words(c);
+    return std::find_first_of(own.begin(), own.end(), wanted.begin(), wanted.end()) != own.end();
+  });
+}
+
+}  // namespace
+
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates,
                        std::string_view what) {
   if (const std::string near = nearest_name(name, candidates); !near.empty()) {
     return fmt::format("did you mean '{}'?", near);
+  }
+  constexpr std::size_t most_related = 10;
+  if (std::vector<std::string> related = related_names(name, candidates);
+      !related.empty() && related.size() <= most_related) {
+    for (std::string& r : related) r = "'" + r + "'";
+    return fmt::format("did you mean {}?", in_words(related, "or"));
   }
   constexpr std::size_t few = 16;
   if (candidates.empty() || candidates.size() > few) return {};

@@ -15,7 +15,8 @@ int edit_distance(std::string_view a, std::string_view b);
 /// Among equals the earlier candidate wins.
 std::string nearest_name(std::string_view name, const std::vector<std::string>& candidates);
 
-/// "did you mean 'porosity'?", or the list of valid names when none is near and they are few.
+/// "did you mean 'porosity'?"; when none is near, a few that begin with the name or share a word of
+/// it between underscores, or the list of valid names when they are few.
 std::string suggestion(std::string_view name, const std::vector<std::string>& candidates,
                        std::string_view what = "valid names");
 

@@ -1,7 +1,8 @@
 #include "core/words.h"
 
-#include <charconv>
+#include <optional>
 
+#include "core/decimal.h"
 #include "core/text.h"
 
 namespace sphgeo {
@@ -30,16 +31,15 @@ void Words::skip_line() {
 
 double Words::number() {
   const std::string_view word = next();
-  std::string_view digits = word;
-  if (digits.starts_with('+')) digits.remove_prefix(1);
-  // A second sign is none: from_chars takes the '-' of "+-5".
-  if (digits.size() < word.size() && digits.starts_with('-')) digits = {};
-  double v = 0.0;
-  const auto [end, status] = std::from_chars(digits.data(), digits.data() + digits.size(), v);
-  if (status != std::errc() || end != digits.data() + digits.size())
-    fail(word.empty() ? "expected a number, and the file ends here"
-                      : "expected a number, found '" + shortened(word, 60) + "'");
-  return v;
+  if (word.empty()) fail("expected a number, and the file ends here");
+  const std::optional<double> value = read_decimal(word);
+  if (!value) {
+    const std::string why = why_no_decimal(word);
+    fail(why.ends_with(" is not a number")
+             ? "expected a number, found '" + shortened(word, 60) + "'"
+             : why);
+  }
+  return *value;
 }
 
 void Words::fail(const std::string& what) const {

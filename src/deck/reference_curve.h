@@ -15,9 +15,10 @@ struct ReferenceCurve {
 };
 
 /// Reads the reference_csv of a claim. Units in the headings are converted, to seconds and to
-/// `unit` of the probe's column where it is known, unless the deck scales the column itself
-/// (x_scale, y_scale, scale). Throws IoError, or TableError with file and line for a table that
-/// cannot be used.
+/// `unit` of the probe's column where it is known. Where the deck scales a column itself (x_scale,
+/// y_scale, scale), plain numbers get their meaning from it; a unit that says something else than
+/// the factor is an error. Throws IoError, or TableError with file and line for a table that cannot
+/// be used, or has no point between `from` and `to`.
 ReferenceCurve read_reference(const Expect& claim, std::optional<std::string_view> unit);
 
 }  // namespace sphgeo

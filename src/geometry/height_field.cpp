@@ -27,7 +27,7 @@ Schema<HeightField> HeightField::schema() {
       .choices({"auto", "grid", "points", "esri"});
   s.optional("no_data", &HeightField::no_data, unit::none,
              "The number in the file that means no height is known; auto: what its header says, "
-             "else -9999, -32768 and -3.4e38.");
+             "and -9999, -32768 and 3.4e38 of either sign.");
   s.optional("holes", &HeightField::holes, unit::none,
              "What to do where no height is known: refuse the file, or fill holes by the smooth "
              "surface through the heights around them.")
@@ -91,7 +91,8 @@ void HeightField::prepare() {
                       where, exact(section), exact(y0_), exact(end)));
     // The bilinear surface cut at constant y is a polyline over the columns.
     std::vector<double> row(nx);
-    for (int i = 0; i < nx_; ++i) row[static_cast<std::size_t>(i)] = height(x0_ + i * dx_, section);
+    for (int i = 0; i < nx_; ++i)
+      row[static_cast<std::size_t>(i)] = surface(x0_ + i * dx_, section);
     grid_ = std::move(row);
     ny_ = 1;
   }
@@ -122,16 +123,25 @@ void HeightField::place(const TerrainGrid& from, const std::string& where) {
   constexpr double longest = 1e12;  // m; products of four lengths stay in the range of a double
   TerrainGrid grid = from;
   if (grid.ny < 1) fail("no row of heights is given");
-  if (grid.nx < 2) fail("at least two heights in a row are needed");
+  along_y_ = grid.placed && grid.nx == 1 && grid.ny > 1;
+  if (along_y_ && flat)
+    fail("the heights stand on one line along y, of which a 2D scene in x and z sees one point");
+  if (grid.nx < 2 && !along_y_) fail("at least two heights in a row are needed");
   if (grid.placed) {
-    const auto differs = [](const std::optional<double>& a, double b) {
-      return a && std::abs(*a - b) > 1e-6 * b;
+    // The deck may know better what the digits of the file have rounded.
+    const auto take = [&](const std::optional<double>& said, double& step, int lines) {
+      if (!said || lines < 2) return true;
+      if (!(std::abs(*said - step) <= 1e-6 * step + grid.slack)) return false;
+      step = *said;
+      return true;
     };
-    if (differs(spacing, grid.dx) || differs(spacing_y ? spacing_y : spacing, grid.dy))
+    const double dx = grid.dx, dy = grid.dy;
+    if (!take(spacing, grid.dx, grid.nx) ||
+        !take(spacing_y ? spacing_y : spacing, grid.dy, grid.ny))
       fail(
           fmt::format("the heights of the file are {} m by {} m apart, the deck says otherwise: "
                       "leave `spacing` out",
-                      exact(grid.dx), exact(grid.dy)));
+                      exact(dx), exact(dy)));
   } else if (!spacing) {
     fail("`spacing` is missing: numbers alone do not say how far apart the heights are");
   } else {
@@ -175,6 +185,11 @@ void HeightField::place(const TerrainGrid& from, const std::string& where) {
                     "map? `map_origin: [{}, {}, 0]` moves its first height to the origin",
                     extent, exact(x0_), exact(y0_), exact(grid.x), exact(grid.y)));
   if (!(reach <= longest)) fail("the terrain reaches " + exact(reach) + " m: is `spacing` right?");
+  if (along_y_) {
+    std::swap(nx_, ny_);
+    std::swap(dx_, dy_);
+    std::swap(x0_, y0_);
+  }
 }
 
 void HeightField::inspect(CheckContext& context) const {
@@ -190,6 +205,10 @@ double HeightField::node(int i, int j) const {
 }
 
 double HeightField::height(double x, double y) const {
+  return along_y_ ? surface(y, x) : surface(x, y);
+}
+
+double HeightField::surface(double x, double y) const {
   const double u = std::clamp((x - x0_) / dx_, 0.0, nx_ - 1.0);
   const int i = std::min(static_cast<int>(u), nx_ - 2);
   const double a = u - i;
@@ -260,7 +279,7 @@ double HeightField::patch_distance_squared(const Vec3& p, std::int32_t cell, dou
 }
 
 double HeightField::signed_distance(const Vec3& at) const {
-  const Vec3 p{at.x(), ny_ == 1 ? 0.0 : at.y(), at.z()};
+  const Vec3 p{along_y_ ? at.y() : at.x(), ny_ == 1 ? 0.0 : at.y(), at.z()};
   const Vec3 nearest = p.cwiseMax(lo_).cwiseMin(hi_);
   double side =
       std::max(lo_.x() - p.x(), p.x() - hi_.x());  // signed distance to the vertical sides
@@ -271,7 +290,7 @@ double HeightField::signed_distance(const Vec3& at) const {
     side = std::max(side, side_y);
   }
   if (out > 0.0) side = out;
-  const double above = p.z() - height(nearest.x(), nearest.y());
+  const double above = p.z() - surface(nearest.x(), nearest.y());
   const double under = bottom ? *bottom - p.z() : -std::numeric_limits<double>::infinity();
   // Beside the sides or below the underside the top surface is not needed.
   if (above <= 0.0 && (side > 0.0 || under > 0.0)) return extruded_distance(side, under);
@@ -292,6 +311,10 @@ Aabb HeightField::box() const {
   if (ny_ == 1) {
     b.lo.y() = -inf;
     b.hi.y() = inf;
+  }
+  if (along_y_) {
+    std::swap(b.lo.x(), b.lo.y());
+    std::swap(b.hi.x(), b.hi.y());
   }
   return seen(b);
 }

@@ -146,6 +146,7 @@ struct HeightField final : SceneShape {
   double height(double x, double y) const;
 
  private:
+  double surface(double x, double y) const;
   double node(int i, int j) const;
   double patch_distance_squared(const Vec3& p, std::int32_t cell,
                                 double best) const;  // infinite when more than `best`
@@ -155,6 +156,7 @@ struct HeightField final : SceneShape {
   std::vector<double> grid_;  // metres, row by row
   int nx_ = 0, ny_ = 0;
   double x0_ = 0, y0_ = 0;  // of the first height
+  bool along_y_ = false;    // one line of heights along y: x and y are exchanged within
   Index filled_ = 0;        // holes
   Vec3 lo_ = Vec3::Zero(), hi_ = Vec3::Zero();
   double dx_ = 0.0, dy_ = 0.0;

@@ -42,12 +42,7 @@ void add_face(Triangles& mesh, const std::array<Vec3, 3>& corners, const std::st
     throw IoError(path,
                   "more than " + std::to_string(max_faces) + " triangles: use a coarser surface");
   const auto first = static_cast<std::int32_t>(mesh.points.size());
-  for (const Vec3& c : corners) {
-    if (!c.allFinite())
-      throw IoError(path, "triangle " + std::to_string(mesh.faces.size() + 1) +
-                              " has a corner that is not finite");
-    mesh.points.push_back(c);
-  }
+  mesh.points.insert(mesh.points.end(), corners.begin(), corners.end());
   mesh.faces.push_back({first, first + 1, first + 2});
 }
 
@@ -86,6 +81,9 @@ Triangles read_binary(const std::string& bytes, std::size_t count, const std::st
     std::array<Vec3, 3> c;
     for (Vec3& v : c) {
       v = Vec3(read_f32(corner), read_f32(corner + 4), read_f32(corner + 8));
+      if (!v.allFinite())
+        throw IoError(path,
+                      "triangle " + std::to_string(f + 1) + " has a corner that is not finite");
       corner += 12;
     }
     add_face(mesh, c, path);
@@ -94,9 +92,15 @@ Triangles read_binary(const std::string& bytes, std::size_t count, const std::st
 }
 
 /// Only `vertex` and `endfacet` matter; the name after `solid` may hold any words.
-Triangles read_text(const std::string& text, const std::string& path) {
+Triangles read_text(std::string_view text, const std::string& path) {
   Triangles mesh;
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // a byte order mark
   Words words(text, path);
+  const std::string_view first = words.peek();
+  if (first.empty()) throw IoError(path, "not an STL file: it is empty");
+  if (lower_case(first) != "solid")
+    throw IoError(path, "not an STL file: it begins with '" + shortened(first, 40) +
+                            "', not with 'solid' as a text, and has no header of a binary");
   std::array<Vec3, 3> corners;
   int have = 0;
   for (std::string_view next = words.next(); !next.empty(); next = words.next()) {
@@ -107,6 +111,7 @@ Triangles read_text(const std::string& text, const std::string& path) {
       if (have == 3) words.fail("a face with more than three corners");
       Vec3& c = corners[static_cast<std::size_t>(have++)];
       for (int k = 0; k < 3; ++k) c[k] = words.number();
+      if (!c.allFinite()) words.fail("a corner that is not finite");
     } else if (word == "endfacet") {
       if (have != 3) words.fail("a face with " + std::to_string(have) + " corners");
       add_face(mesh, corners, path);
@@ -117,13 +122,15 @@ Triangles read_text(const std::string& text, const std::string& path) {
   return mesh;
 }
 
-// Whether the file is text: binary ones may begin with "solid" too, but their count or their first
-// numbers hold bytes that no text has.
-bool is_text(std::string_view begin) {
-  for (const char c : begin)
-    if (static_cast<unsigned char>(c) < ' ' && !(c >= '\t' && c <= '\r')) return false;
-  const std::string lower = lower_case(begin);
-  return lower.find("solid") < header_bytes && lower.find("facet") != std::string::npos;
+// Whether the file is text: binary ones may begin with "solid" too, but the size that they count,
+// or bytes that no text has, tell them apart.
+bool is_text(std::string_view begin, std::uint64_t size) {
+  if (begin.size() >= header_bytes + 4 &&
+      size == header_bytes + 4 + face_bytes * std::uint64_t{read_u32(begin.data() + header_bytes)})
+    return false;
+  return std::none_of(begin.begin(), begin.end(), [](char c) {
+    return static_cast<unsigned char>(c) < ' ' && !(c >= '\t' && c <= '\r');
+  });
 }
 
 }  // namespace
@@ -133,7 +140,7 @@ StlSurface read_stl(const std::string& path) {
   std::error_code unknown;
   const std::uint64_t size = std::filesystem::file_size(path, unknown);
   StlSurface surface;
-  if (is_text(begin)) {
+  if (is_text(begin, size)) {
     if (!unknown && size > max_text_bytes)
       throw IoError(path, std::to_string(size >> 20) +
                               " MB of text are too heavy: save it as binary STL, or use a coarser "

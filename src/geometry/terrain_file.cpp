@@ -13,6 +13,7 @@
 #include "core/text.h"
 #include "core/words.h"
 #include "deck/table_columns.h"
+#include "geometry/grid_axis.h"
 
 namespace sphgeo {
 namespace {
@@ -34,6 +35,13 @@ void mark_holes(std::vector<double>& heights, std::optional<double> no_data) {
   }
 }
 
+void skip_comments(Words& words) {
+  while (words.peek().starts_with('#')) {
+    words.next();
+    words.skip_line();
+  }
+}
+
 bool is_header_word(const std::string& word) {
   for (const char* known : {"ncols", "nrows", "xllcorner", "yllcorner", "xllcenter", "yllcenter",
                             "cellsize", "dx", "dy", "nodata_value"})
@@ -46,6 +54,7 @@ TerrainGrid read_esri(std::string_view text, const std::string& path,
   Words words(text, path);
   std::map<std::string, double> header;
   for (;;) {
+    skip_comments(words);
     const std::string word = lower_case(words.peek());
     if (!is_header_word(word)) break;
     words.next();
@@ -54,6 +63,11 @@ TerrainGrid read_esri(std::string_view text, const std::string& path,
     if (word != "nodata_value" && !std::isfinite(header[word]))
       words.fail("'" + word + "' is not a finite number");
   }
+  for (const auto& [one, other] :
+       {std::pair{"xllcorner", "xllcenter"}, std::pair{"yllcorner", "yllcenter"},
+        std::pair{"cellsize", "dx"}, std::pair{"cellsize", "dy"}})
+    if (header.contains(one) && header.contains(other))
+      words.fail(fmt::format("'{}' and '{}' are both given: leave one of them out", one, other));
   const auto value = [&](const char* name) {
     const auto found = header.find(name);
     if (found == header.end()) words.fail(fmt::format("the header has no '{}'", name));
@@ -82,9 +96,12 @@ TerrainGrid read_esri(std::string_view text, const std::string& path,
   if (!no_data && header.contains("nodata_value")) marked = header["nodata_value"];
   grid.heights.resize(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny));
   for (int row = grid.ny - 1; row >= 0; --row)
-    for (int i = 0; i < grid.nx; ++i)
+    for (int i = 0; i < grid.nx; ++i) {
+      const double z = words.number();
+      if (std::isinf(z)) words.fail("a height is infinite");
       grid.heights[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.nx) +
-                   static_cast<std::size_t>(i)] = words.number();
+                   static_cast<std::size_t>(i)] = z;
+    }
   if (const auto rest = words.next(); !rest.empty())
     words.fail(fmt::format("'{}' after the last of {} x {} heights", shortened(rest, 40), grid.nx,
                            grid.ny));
@@ -93,53 +110,24 @@ TerrainGrid read_esri(std::string_view text, const std::string& path,
   return grid;
 }
 
-// The steps of coordinates that lie on a line of nodes, some perhaps missing.
-struct Axis {
-  double first = 0, step = 0;
-  int count = 1;
-
-  Axis(std::vector<double> at, const CsvTable& table, const char* name) {
-    std::sort(at.begin(), at.end());
-    first = at.front();
-    const double extent = at.back() - first;
-    if (extent == 0) return;
-    double widest = 0;
-    for (std::size_t k = 1; k < at.size(); ++k) widest = std::max(widest, at[k] - at[k - 1]);
-    // Gaps below a thousandth of the widest come from rounding.
-    double narrowest = widest;
-    for (std::size_t k = 1; k < at.size(); ++k)
-      if (const double gap = at[k] - at[k - 1]; gap > 1e-3 * widest)
-        narrowest = std::min(narrowest, gap);
-    const double n = std::round(extent / narrowest);
-    if (!(n < most_heights))
-      throw TableError(fmt::format("{}: the points lie on no grid along {}", table.path(), name));
-    count = static_cast<int>(n) + 1;
-    step = extent / n;
-  }
-  // The node of a coordinate; throws when it is off by more than a twentieth of a step.
-  int node(double at, const CsvTable& table, std::size_t row, const char* name) const {
-    if (count == 1) return 0;
-    const double u = (at - first) / step, k = std::round(u);
-    if (std::abs(u - k) > 0.05)
-      throw TableError(
-          fmt::format("{}: the point at {} = {} m lies on no grid: its neighbors are "
-                      "{} m apart",
-                      table.place(row), name, exact(at), exact(step)));
-    return static_cast<int>(k);
-  }
-};
-
 TerrainGrid read_points(const CsvTable& table, std::optional<double> no_data) {
   check_columns(table, {"x", "y", "z"});
   const std::vector<double> x = si_column(table, "x", unit::length),
                             y = si_column(table, "y", unit::length);
   std::vector<double> z = table.numbers("z");
   mark_holes(z, no_data);
-  const UnitText z_unit = column_unit(table, "z", unit::length);
+  z = in_si(table, "z", std::move(z), column_unit(table, "z", unit::length));
   if (x.empty()) throw TableError(table.path() + ": the table has no points");
-  const Axis along(x, table, "x"), across(y, table, "y");
-  TerrainGrid grid{along.count, across.count, {},         true,
-                   along.first, across.first, along.step, across.step};
+  const GridAxis along(table, "x", x), across(table, "y", y);
+  TerrainGrid grid;
+  grid.nx = along.count;
+  grid.ny = across.count;
+  grid.placed = true;
+  grid.x = along.first;
+  grid.y = across.first;
+  grid.dx = along.step;
+  grid.dy = across.step;
+  grid.slack = std::max(along.slack, across.slack);
   if (double{1} * grid.nx * grid.ny > 8.0 * static_cast<double>(x.size()) + 64)
     throw TableError(
         fmt::format("{}: the points lie on no grid: {} points, and the closest of "
@@ -149,14 +137,14 @@ TerrainGrid read_points(const CsvTable& table, std::optional<double> no_data) {
   grid.heights.assign(nodes, hole);
   std::vector<std::size_t> row_of(nodes, table.rows());
   for (std::size_t row = 0; row < x.size(); ++row) {
-    const std::size_t node = static_cast<std::size_t>(across.node(y[row], table, row, "y")) *
-                                 static_cast<std::size_t>(grid.nx) +
-                             static_cast<std::size_t>(along.node(x[row], table, row, "x"));
+    const std::size_t node =
+        static_cast<std::size_t>(across.node(y[row], row)) * static_cast<std::size_t>(grid.nx) +
+        static_cast<std::size_t>(along.node(x[row], row));
     if (row_of[node] < table.rows())
       throw TableError(
           fmt::format("{}: the same point as {}", table.place(row), table.place(row_of[node])));
     row_of[node] = row;
-    grid.heights[node] = z[row] * z_unit.factor / z_unit.divisor;
+    grid.heights[node] = z[row];
   }
   return grid;
 }
@@ -187,7 +175,9 @@ bool may_be_points(const CsvTable& table) {
 }
 
 bool begins_as_esri(std::string_view text) {
-  return is_header_word(lower_case(Words(text.substr(0, 4096), "").next()));
+  Words words(text, "");
+  skip_comments(words);
+  return is_header_word(lower_case(words.peek()));
 }
 
 }  // namespace
@@ -199,7 +189,9 @@ TerrainGrid read_terrain(const std::string& path, const std::string& format,
   if (format == "esri" || (format == "auto" && begins_as_esri(text)))
     return read_esri(text, path, no_data);
   const CsvTable table = parse_csv_table(text, path, static_cast<std::size_t>(3 * most_heights));
+  if (format == "auto") table.check_headings();
   if (format == "points" || (format == "auto" && table.named())) return read_points(table, no_data);
+  table.check_headings();
   if (table.named())
     throw TableError(table.header_place() + ": a grid of heights has no column names");
   if (format == "auto" && may_be_points(table))

@@ -16,6 +16,7 @@ struct TerrainGrid {
   bool placed = false;          ///< whether the file says where the heights are
   double x = 0, y = 0;          ///< of the first height, m
   double dx = 0, dy = 0;        ///< distances of the heights, m
+  double slack = 0;             ///< by which rounding in the file leaves them open, m
 };
 
 /// Reads heights from
@@ -24,8 +25,8 @@ struct TerrainGrid {
 ///   - a table of points with the columns x, y and z, in any order, that lie on a grid ("points");
 ///   - a table of numbers alone, each row along x, row after row along y ("grid").
 /// Format "auto" tells them apart by their contents. A height of `no_data` is a hole; without it,
-/// what the header says, else -9999, -32768 and -3.4e38. Throws IoError, or TableError with file
-/// and line.
+/// what the header says, and -9999, -32768 and 3.4e38 of either sign. Throws IoError, or TableError
+/// with file and line.
 TerrainGrid read_terrain(const std::string& path, const std::string& format,
                          std::optional<double> no_data);
 

@@ -13,6 +13,7 @@
 #include "scene/extent.h"
 #include "scene/interface.h"
 #include "scene/join_walls.h"
+#include "scene/output_check.h"
 #include "scene/parameters.h"
 #include "scene/pore_water.h"
 #include "scene/soil.h"
@@ -285,6 +286,7 @@ Scene<Dim> build_scene(const Model& model, Diagnostics& found, Filling filling) 
   Scene<Dim> scene;
   scene.model = &model;
   check_extent(model, found);
+  check_outputs(model, found);
   if (found.has_errors()) throw DeckError(found);
   // What follows from the filling is added below; then nobody changes it any more.
   const auto parameters = std::make_shared<Parameters>(compile_parameters(model));

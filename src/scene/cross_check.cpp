@@ -238,8 +238,9 @@ void check_switched_off(const Model& model, Diagnostics& found) {
                   fmt::format("effect '{}' cannot be switched off", name),
                   "these can: " + in_words(can));
     } else {
+      const std::string near = suggestion(name, all);
       found.error("E141", model.place_of(path), path, fmt::format("there is no effect '{}'", name),
-                  suggestion(name, can, "effects that can be switched off"));
+                  (near.empty() ? "" : near + " ") + "these can be switched off: " + in_words(can));
     }
   }
 }

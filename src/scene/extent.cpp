@@ -26,10 +26,12 @@ void extend(Aabb& all, const Aabb& box) {
       }
 }
 
-Aabb within_domain(Aabb box, const Numerics& n) {
-  if (n.domain_min) box.lo = box.lo.cwiseMax(*n.domain_min);
-  if (n.domain_max) box.hi = box.hi.cwiseMin(*n.domain_max);
-  return box;
+// What the domain keeps of a box; all of it where that is nothing, as it is far away then.
+Aabb within_domain(const Aabb& box, const Numerics& n) {
+  Aabb kept = box;
+  if (n.domain_min) kept.lo = kept.lo.cwiseMax(*n.domain_min);
+  if (n.domain_max) kept.hi = kept.hi.cwiseMin(*n.domain_max);
+  return (kept.lo.array() <= kept.hi.array()).all() ? kept : box;
 }
 
 std::vector<Part> parts_of(const Model& model) {

@@ -63,9 +63,12 @@ class CommandLine(ProgramTest):
         self.refused(2, "'sphgeo check' needs DECK", "check")
         self.refused(2, "no use for 'more.yaml'", "check", "deck.yaml", "more.yaml")
         self.refused(2, "--set", "check", "deck.yaml", "--set")
-        for wrong in ("0", "-1", "two", "2.5", "1e400", "99999999999999999999"):
+        for wrong in ("0", "-1", "two", "2.5", "1e400"):
             self.refused(2, f"'{wrong}' is not a whole number above 0", "run", "deck.yaml", "-o", "out",
                          f"--threads={wrong}")
+        for many in ("1025", "1e8", "100000000", "99999999999999999999"):
+            self.refused(2, f"'{many}': at most 1024 threads", "run", "deck.yaml", "-o", "out",
+                         f"--threads={many}")
         self.refused(2, "no bench scene 'dam_brek'; did you mean 'dam_break'?", "bench", "--scene",
                      "dam_brek")
         self.assertFalse((self.here / "out").exists())
@@ -199,6 +202,7 @@ boundaries: [{name: ground, type: wall, shape: {type: box, min: [-1, -1, -0.5], 
         for text in ("columns, in 3D:", "  flow [m3/s]", "  mass_flow [kg/s]"):
             self.assertIn(text, self.accepted("show", "flux").stdout)
         self.refused(2, "no type 'bxo'; did you mean 'box'?", "show", "bxo")
+        self.refused(2, ["no type 'interfac'; did you mean", "'interface_state'"], "show", "interfac")
         self.refused(2, "'sphgeo list'", "show", "no_such_thing_at_all")
 
     def test_a_full_disk_is_said(self):

@@ -3,7 +3,7 @@
 
     test_resume.py SPHGEO DECK [--kills N] [--seed N] [sphgeo run options...]
 
-Ends: --max-steps at three places, SIGTERM, SIGINT, the stop file, `kill -9` at random times (N of them, also
+Ends: --max-steps at three places, SIGTERM, SIGINT, three of them, the stop file, `kill -9` at random times (N of them, also
 while a checkpoint is being written); then damaged checkpoints, a changed deck, a later end, two runs in one folder.
 """
 import argparse
@@ -100,6 +100,20 @@ def end_politely(t):
             t.fail(f"{name}: the stop file is still there, and would end the next run")
         t.run(out, "--resume")
         t.same(out, name)
+
+
+def end_at_once(t):
+    """The third signal ends a run as it is; what it was writing does not stay half-written."""
+    for _ in range(5):
+        out = t.fresh("at_once")
+        process = subprocess.Popen(t.words(out, "--set", "output.checkpoint_every=0"), stdin=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+        wait_for_rows(t, out, process, 0)
+        while process.poll() is None:
+            process.send_signal(signal.SIGINT)
+        left = sorted(str(p) for p in out.rglob("*.part"))
+        if left:
+            t.fail(f"three signals: exit {process.returncode}, left {left}")
 
 
 def kill(t, rng, kills):
@@ -211,6 +225,7 @@ def main():
         t.reference = results(whole)
         end_by_steps(t, rng)
         end_politely(t)
+        end_at_once(t)
         damaged(t, rng)
         changes(t)
         locked(t)

@@ -99,7 +99,58 @@ TEST_SUITE("core") {
     CHECK(failure("a;p\n1;1.000,5\n", "p") ==
           "t.csv:2: column 'p': '1.000,5' is not a finite number");
     CHECK(failure("a;p\n1;1,000,000\n", "p") ==
-          "t.csv:2: column 'p': '1,000,000' is not a finite number");
+          "t.csv:2: column 'p': '1,000,000' is not a finite number: leave out the commas between "
+          "thousands");
+  }
+
+  TEST_CASE("separators at the ends of rows make no column, and empty cells at the ends are read") {
+    for (const char* text :
+         {"t,x,\n0,1,\n2,3,\n", "t;x;;\n0;1;;\n2;3;;\n", "t\tx\t\n0\t1\t\n2\t3\t\n",
+          "t,x\n0,1,\n2,3\n", "t,x,\n0,1\n2,3,\n,,\n", "0,1,\n2,3,\n", "0\t1\t\n2\t3\t\n"}) {
+      CAPTURE(text);
+      const CsvTable t = parse_csv_table(text, "t.csv");
+      CHECK(t.names().size() == 2);
+      CHECK(t.rows() == 2);
+      CHECK(t.numbers(t.names()[1]) == std::vector<double>{1, 3});
+    }
+    CHECK(failure("t,x,\n0,1,5\n") == "t.csv:1: a column has no name");
+    CHECK(failure("t,x\n0,1,5\n") == "t.csv:2: 3 cells, but there are 2 columns");
+    // A hole at the end of a row is one where another row has a value there.
+    CHECK(std::isnan(parse_csv_table("1,2,\n3,4,5\n", "t.csv").numbers("3")[0]));
+    const CsvTable tabs = parse_csv_table("a\tb\tc\n\t2\t3\n4\t5\t\n", "t.csv");
+    CHECK(std::isnan(tabs.numbers("a")[0]));
+    CHECK(tabs.numbers("b") == std::vector<double>{2, 5});
+    CHECK(std::isnan(tabs.numbers("c")[1]));
+    CHECK(parse_csv_table("7\t\n8\t\n", "t.csv").names().size() == 1);
+  }
+
+  TEST_CASE("numbers that no double holds, and every spelling of nan") {
+    CHECK(failure("a,p\n1,1e-400\n", "p") ==
+          "t.csv:2: column 'p': '1e-400' is too close to zero for a number: write 0");
+    const CsvTable t = parse_csv_table("a,p\n1,-nan\n2,NAN\n3,nan(ind)\n4,5e-324\n", "t.csv");
+    for (std::size_t k = 0; k < 3; ++k) CHECK(std::isnan(t.numbers("p")[k]));
+    CHECK(t.numbers("p")[3] == 5e-324);
+  }
+
+  TEST_CASE("commas between thousands are said") {
+    CHECK(failure("a,p\n1,1,234.5\n") ==
+          "t.csv:2: 3 cells, but there are 2 columns; if '1,234.5' is one number, leave out the "
+          "comma between thousands");
+    const std::string said =
+        "t.csv:2: column 'p': '1,234.5' is not a finite number: leave out the commas between "
+        "thousands";
+    CHECK(failure("a,p\n1,\"1,234.5\"\n", "p") == said);
+    CHECK(failure("a;p\n1;1,234.5\n", "p") == said);
+    CHECK(parse_csv_table("a;p\n1;1,234\n", "t.csv").numbers("p")[0] == 1.234);
+  }
+
+  TEST_CASE("a bad number in the first row is said with its column") {
+    CHECK(failure("1,x2,1\n4,5,6\n") == "t.csv:1: column 2: 'x2' is not a finite number");
+    const auto headings = [](const char* text) { parse_csv_table(text, "t.csv").check_headings(); };
+    CHECK_THROWS_WITH(headings("1,2,x3\n4,5,6\n"),
+                      "t.csv:1: column 3: 'x3' is not a finite number");
+    CHECK_NOTHROW(headings("time,p,1\n4,5,6\n"));
+    CHECK_NOTHROW(headings("1,2\n4,5\n"));
   }
 
   TEST_CASE("comments, lines and encodings of other programs") {

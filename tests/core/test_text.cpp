@@ -46,6 +46,11 @@ TEST_SUITE("core") {
     CHECK(suggestion("bx", {"box"}) == "did you mean 'box'?");
     CHECK(suggestion("quux", {"box", "sphere"}, "valid types") == "valid types: box and sphere");
     CHECK(suggestion("quux", std::vector<std::string>(40, "something")).empty());
+    // Names that begin like it, or share a word with it.
+    const std::vector<std::string> effects{"interface_state", "interface_force", "drag"};
+    CHECK(suggestion("interfac", effects) ==
+          "did you mean 'interface_state' or 'interface_force'?");
+    CHECK(suggestion("skin_state", effects) == "did you mean 'interface_state'?");
     CHECK(in_words({"a", "b", "c"}, "or") == "a, b or c");
   }
 

@@ -35,6 +35,10 @@ TEST_SUITE("deck") {
           "t.csv:1: column 'x [s]': 's' is not a length");
     CHECK(column_complaint("t,x\n0,1\n1,\n", unit::length) ==
           "t.csv:3: column 'x': the cell is empty");
+    CHECK(column_complaint("t,x [-]\n0,1\n", unit::length) ==
+          "t.csv:1: column 'x [-]': '-' is not a length");
+    CHECK(column_complaint("t,x [km]\n0,1\n1,1e308\n", unit::length) ==
+          "t.csv:3: column 'x [km]': '1e308' is too large in this unit");
   }
 
   TEST_CASE("unknown columns are refused with the nearest name") {
@@ -46,6 +50,7 @@ TEST_SUITE("deck") {
                       "t.csv:1: there is no column 'X' here; did you mean 'x'?");
     CHECK_THROWS_WITH(check("t,roll\n0,1\n"),
                       "t.csv:1: there is no column 'roll' here; columns: t, x and angle");
+    CHECK_THROWS_WITH(check("0,1.5o\n1,2\n"), "t.csv:1: column 2: '1.5o' is not a finite number");
     CHECK_THROWS_WITH(check("0,1\n1,2\n"),
                       "t.csv: the table has no row of column names; expected t, x or angle");
   }

@@ -14,10 +14,15 @@ namespace sphgeo::fuzz {
 namespace {
 
 // The readers' own limits for sizes are tested by hand; short inputs find more here.
-constexpr std::array all{
-    Target{"deck", run_deck, 1 << 14},     Target{"set", run_set, 1 << 12},
-    Target{"stl", run_stl, 1 << 14},       Target{"csv", run_csv, 1 << 14},
-    Target{"resume", run_resume, 1 << 14}, Target{"checkpoint", run_checkpoint, 1 << 12}};
+constexpr std::array all{Target{"deck", run_deck, 1 << 14},
+                         Target{"set", run_set, 1 << 12},
+                         Target{"stl", run_stl, 1 << 14},
+                         Target{"csv", run_csv, 1 << 14},
+                         Target{"resume", run_resume, 1 << 14},
+                         Target{"checkpoint", run_checkpoint, 1 << 12},
+                         Target{"terrain", run_terrain, 1 << 14},
+                         Target{"motion", run_motion, 1 << 14},
+                         Target{"reference", run_reference, 1 << 14}};
 
 /// Owns the scratch folder until the process ends.
 struct Scratch {

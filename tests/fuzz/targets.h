@@ -44,5 +44,8 @@ void run_stl(std::string_view input);
 void run_csv(std::string_view input);
 void run_resume(std::string_view input);
 void run_checkpoint(std::string_view input);
+void run_terrain(std::string_view input);
+void run_motion(std::string_view input);
+void run_reference(std::string_view input);
 
 }  // namespace sphgeo::fuzz

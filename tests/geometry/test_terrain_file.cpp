@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -102,13 +104,84 @@ TEST_SUITE("geometry") {
   }
 
   TEST_CASE("points that lie on no grid, or twice on a node, are refused") {
-    CHECK(complains("x,y,z\n0,0,1\n1,0,1\n2.1,0,1\n3,0,1\n", ":4: the point at x = 2.1 m"));
+    CHECK(complains("x,y,z\n0,0,1\n1,0,1\n2.10,0,1\n3,0,1\n", ":4: the point at x = 2.1 m"));
     CHECK(complains("x,y,z\n0,0,1\n1,0,1\n0,0,2\n", ":4: the same point as"));
     CHECK(complains("x,y,height\n0,0,1\n", "no column 'height'"));
     std::string scattered = "x,y,z\n";
     for (int k = 0; k < 40; ++k)
       scattered += std::to_string(k * 7 % 41) + "," + std::to_string(k * 13 % 43) + ",1\n";
     CHECK(complains(scattered, "lie on no grid"));
+  }
+
+  TEST_CASE("points whose coordinates are rounded lie on the grid that was rounded") {
+    const auto rounded = [](double step, int lines, int digits, double origin) {
+      std::string text = "x,y,z\n";
+      for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < lines; ++i)
+          text += fmt::format("{:.{}f},{:.{}f},{}\n", origin + i * step, digits, j * step, digits,
+                              i + 10 * j);
+      return text;
+    };
+    for (const auto& [step, digits] : {std::pair{1.0 / 3, 2}, std::pair{1.0 / 6, 2},
+                                       std::pair{0.125, 2}, std::pair{0.25, 1}, std::pair{0.1, 6}})
+      for (const int lines : {5, 301})
+        for (const double origin : {0.0, 12.34, -0.057}) {
+          CAPTURE(step);
+          CAPTURE(lines);
+          CAPTURE(origin);
+          const TerrainGrid g = terrain(rounded(step, lines, digits, origin));
+          REQUIRE(g.nx == lines);
+          CHECK(g.ny == 3);
+          CHECK(g.heights[static_cast<std::size_t>(lines) + 4] == 14);
+          CHECK(std::abs(g.dx - step) <= g.slack + 1e-9 * step);
+          CHECK(std::abs(g.x - origin) <= 1.01 * std::pow(10.0, -digits));
+        }
+    // A missing line, and a deck that knows the step.
+    CHECK(terrain("x,y,z\n0.00,0,1\n0.33,0,2\n1.00,0,3\n1.33,0,4\n1.67,0,5\n").nx == 6);
+    const std::string thirds = "x,y,z\n0.00,0,1\n0.33,0,2\n0.67,0,3\n1.00,0,4\n1.33,0,5\n";
+    CHECK(deck_complaint(thirds, ", spacing: 1/3").empty());
+    CHECK(deck_complaint(thirds, ", spacing: 0.35").find("the deck says otherwise") !=
+          std::string::npos);
+    // Two decimals show more than this: no grid.
+    CHECK(complains("x,y,z\n0.00,0,1\n1.00,0,1\n2.04,0,1\n3.00,0,1\n", "lies on no grid"));
+  }
+
+  TEST_CASE("one line of points is a profile, along x or along y") {
+    const auto read = [](const std::string& text) {
+      const TerrainText file(text);
+      return shape_of("{type: height_field, bottom: -1, file: " + file.path + "}", 3);
+    };
+    const std::string along_y = "x,y,z\n5,0,1\n5,1,2\n5,2,4\n";
+    const ShapePtr a = read("x,y,z\n0,5,1\n1,5,2\n2,5,4\n"), b = read(along_y);
+    for (const Vec3& at : {Vec3(0.5, 7, 1.6), Vec3(1.5, -3, 2), Vec3(-1, 0, 0), Vec3(1, 1, -2)}) {
+      const double d = a->signed_distance(at);
+      CHECK(b->signed_distance({at.y(), at.x(), at.z()}) == d);
+    }
+    CHECK(b->box().lo.y() == 0);
+    CHECK(b->box().hi.y() == 2);
+    CHECK(std::isinf(b->box().hi.x()));
+    const TerrainText file(along_y);
+    CHECK(read_shape("{type: height_field, file: " + file.path + "}", 2)
+              .messages()
+              .find("on one line along y") != std::string::npos);
+  }
+
+  TEST_CASE("headers of ESRI grids: comments, contradictions, infinite heights") {
+    CHECK(terrain("# from a map\n#\n" + map_grid).nx == 3);
+    const std::string start = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+    CHECK(complains(start + "xllcenter 0\n1 2\n",
+                    "'xllcorner' and 'xllcenter' are both given: leave one of them out"));
+    CHECK(complains(start + "dx 2\n1 2\n", "'cellsize' and 'dx' are both given"));
+    CHECK(complains(start + "1 inf\n", "line 6: a height is infinite"));
+    CHECK(complains(start + "1 1e-400\n", "line 6: '1e-400' is too close to zero"));
+    CHECK(std::isnan(terrain(start + "1 -nan\n").heights[1]));
+  }
+
+  TEST_CASE("a bad number in the first row of a grid is said with its column") {
+    CHECK(complains("1,2,x3\n4,5,6\n", ":1: column 3: 'x3' is not a finite number"));
+    CHECK(terrain_complaint("1,2,x3\n4,5,6\n", "grid").find(":1: column 3: 'x3'") !=
+          std::string::npos);
+    CHECK(complains("1,2,3\n4,5,x6\n", ":2: column '3': 'x6' is not a finite number"));
   }
 
   TEST_CASE("three columns without names that look like points are not taken for heights") {

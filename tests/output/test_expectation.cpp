@@ -205,8 +205,29 @@ TEST_SUITE("output") {
             std::string::npos);
       CHECK(compared("t [s],z [cmm]\n0,0\n1,1\n").note.find("there is no unit 'cmm'") !=
             std::string::npos);
+      CHECK(compared("t [s],z\n,0\n1,\n").note.find("no row has both") != std::string::npos);
+      CHECK(compared("t [s],z\n3,0\n4,1\n")
+                .note.find("no row lies between 'from' and 'to': the "
+                           "curve reaches from t = 3 to 4 s") != std::string::npos);
       c.y_scale = 0.05;
-      CHECK(compared("t,z [cm]\n0,0\n1,10\n2,22\n").value.value() == doctest::Approx(exact));
+      CHECK(compared("t,z\n0,0\n1,10\n2,22\n").value.value() == doctest::Approx(exact));
+      CHECK(compared("t,z [-]\n0,0\n1,10\n2,22\n").value.value() == doctest::Approx(exact));
+      // A unit is looked at also where the deck scales.
+      CHECK(compared("t,z [cmm]\n0,0\n1,10\n").note.find("there is no unit 'cmm'") !=
+            std::string::npos);
+      CHECK(compared("t,z [Pa]\n0,0\n1,10\n")
+                .note.find("'Pa' is not a length; take it out of the "
+                           "heading if y_scale makes it one") != std::string::npos);
+      CHECK(compared("t,z [cm]\n0,0\n1,10\n")
+                .note.find("by its unit the numbers are multiplied by "
+                           "0.01, and the deck says y_scale: 0.05") != std::string::npos);
+      c.y_scale = 0.01;  // what the unit says too
+      CHECK(compared("t,z [cm]\n0,0\n1,50\n2,110\n").value.value() == doctest::Approx(exact));
+      c.y_scale = 1;
+      c.scale = 0.01;  // the measured metres become centimetres
+      CHECK(compared("t,z [cm]\n0,0\n1,50\n2,110\n").value.value() == doctest::Approx(exact));
+      c.x_scale = 0.5;
+      CHECK(compared("t [ms],z\n0,0\n").note.find("x_scale: 0.5") != std::string::npos);
     }
     SUBCASE("what cannot be measured fails and says why") {
       Expect b = e;
