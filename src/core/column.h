@@ -1,6 +1,7 @@
 #pragma once
 // Description of a column of numbers: of probes, of run.csv and of every CSV file that is written.
 
+#include <optional>
 #include <string>
 
 namespace sphgeo {
@@ -10,6 +11,7 @@ struct Column {
   std::string name;
   std::string unit;
   std::string sentence;
+  std::optional<double> along = {};  ///< of a profile: its place, from the start of the line, m
 
   /// "pressure [Pa]", or the bare name when there is no unit.
   std::string heading() const {

@@ -91,7 +91,8 @@ ReferenceCurve read_reference(const Expect& claim, std::optional<std::string_vie
   const DeckScale of_x{"x_scale", claim.x_scale, claim.x_scale != 1, false};
   const DeckScale of_y{claim.scale != 1 ? "scale" : "y_scale", claim.scale * claim.y_scale,
                        claim.scale != 1 || claim.y_scale != 1, claim.scale != 1};
-  ReferenceCurve curve{converted(table, claim.x.value_or(table.names().front()), "s", of_x),
+  ReferenceCurve curve{converted(table, claim.x.value_or(table.names().front()),
+                                 claim.reduce == "profile" ? "m" : "s", of_x),
                        converted(table, claim.y ? *claim.y : table.names()[1], unit, of_y)};
   multiply(curve.x, claim.x_scale, claim.x_shift, table, "x_scale");
   multiply(curve.y, claim.y_scale, 0, table, "y_scale");

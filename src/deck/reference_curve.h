@@ -14,11 +14,11 @@ struct ReferenceCurve {
   std::vector<double> x, y;  ///< NaN where the table has no value
 };
 
-/// Reads the reference_csv of a claim. Units in the headings are converted, to seconds and to
-/// `unit` of the probe's column where it is known. Where the deck scales a column itself (x_scale,
-/// y_scale, scale), plain numbers get their meaning from it; a unit that says something else than
-/// the factor is an error. Throws IoError, or TableError with file and line for a table that cannot
-/// be used, or has no point between `from` and `to`.
+/// Reads the reference_csv of a claim. Units in the headings are converted, to seconds (of a
+/// profile, to metres) and to `unit` of the probe's column where it is known. Where the deck scales
+/// a column itself (x_scale, y_scale, scale), plain numbers get their meaning from it; a unit that
+/// says something else than the factor is an error. Throws IoError, or TableError with file and
+/// line for a table that cannot be used, or has no point between `from` and `to`.
 ReferenceCurve read_reference(const Expect& claim, std::optional<std::string_view> unit);
 
 }  // namespace sphgeo

@@ -22,6 +22,7 @@ struct ExpectResult {
   std::optional<double> error;
   double tolerance = 0;
   bool pass = false;
+  bool partial = false;  ///< samples reach only a part of the reference
   std::string note;  ///< why it could not be measured, or what was left out
 };
 

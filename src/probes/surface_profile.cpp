@@ -37,7 +37,8 @@ struct SurfaceProfileProbe final : Probe {
       columns.push_back(
           {fmt::format("height_{}", k), "m",
            fmt::format("z of the surface at x = {:.6g} m, y = {:.6g} m; empty where there is none",
-                       at.x(), at.y())});
+                       at.x(), at.y()),
+           std::hypot(at.x() - from.x(), at.y() - from.y())});
     }
     columns.push_back({"slope_angle", "deg",
                        "slope of the least-squares line through the heights, positive when rising "

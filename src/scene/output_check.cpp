@@ -21,6 +21,13 @@ std::optional<Column> column_of(const Model& model, std::size_t claim, Diagnosti
   for (const auto& spec : model.probes) {
     if (spec->name != name) continue;
     const std::vector<Column> columns = dynamic_cast<const Probe&>(*spec).columns(model);
+    if (model.expect[claim].reduce == "profile" &&
+        (dot != std::string::npos || !columns.front().along)) {
+      const std::string path = fmt::format("expect[{}].probe", claim);
+      found.error("E155", model.place_of(path), path, fmt::format("'{}' is not a profile", source),
+                  "reduce: profile needs the name of a probe of type surface_profile");
+      return {};
+    }
     if (dot == std::string::npos) return columns.front();
     const std::string wanted = source.substr(dot + 1);
     std::vector<std::string> names;

@@ -175,16 +175,58 @@ TEST_SUITE("output") {
       CHECK(r.pass);
       c.norm = "max";
       CHECK(evaluate(c, lookup).value.value() == doctest::Approx(0.1 / 1.1));
+      // A reference that the run does not reach: what there is gets its number, and the claim
+      // fails.
       c.to.reset();
-      CHECK(evaluate(c, lookup).note ==
-            "1 of 4 points of the reference lie outside of the samples");
-      c.x_scale = 5;  // most of the reference is never reached: no comparison
+      c.tolerance = 1;
+      r = evaluate(c, lookup);
+      CHECK(r.value.has_value());
+      CHECK_FALSE(r.pass);
+      CHECK(r.note.find("1 of 4 points of the reference lie outside of the samples, which reach "
+                        "from 0 to 2 s") != std::string::npos);
+      c.x_scale = 5;  // the more so when most of it is not reached
       r = evaluate(c, lookup);
       CHECK_FALSE(r.pass);
-      CHECK_FALSE(r.value);
+      CHECK(r.note.find("lie outside") != std::string::npos);
       c.y = "nothing";
       CHECK(evaluate(c, lookup).note.find("no column 'nothing'") != std::string::npos);
       CHECK_FALSE(evaluate(c, lookup).pass);
+    }
+    SUBCASE("profiles") {
+      // Heights of a line that rises with time: z = (1 + t) x / 2 at x = 0, 1, 2 m; one more
+      // column.
+      Series line("line", {{"height_0", "m", "", 0.0},
+                           {"height_1", "m", "", 1.0},
+                           {"height_2", "m", "", 2.0},
+                           {"slope_angle", "deg", ""}});
+      for (const double t : {0.0, 1.0, 2.0})
+        line.add(t, std::vector<double>{0, 0.5 * (1 + t), 1 + t, 40});
+      const auto find = [&](const std::string& name) { return name == "line" ? &line : nullptr; };
+      const test::TemporaryFolder folder;
+      write_file_atomically(folder / "ref.csv", "x [mm],z [cm]\n0,0\n500,37.5\n2000,150\n");
+      Expect c;
+      c.name = "profile";
+      c.probe = "line";
+      c.reduce = "profile";
+      c.reference_csv = FilePath{folder / "ref.csv"};
+      c.at = 0.5;  // between two samples
+      c.tolerance = 1e-9;
+      r = evaluate(c, find);
+      CHECK(r.value.value() == doctest::Approx(0));
+      CHECK(r.pass);
+      c.at.reset();  // the last one, where z = 1.5 x instead of 0.75 x
+      c.norm = "max";
+      r = evaluate(c, find);
+      CHECK(r.value.value() == doctest::Approx(1.0));
+      CHECK_FALSE(r.pass);
+      c.x_shift = 1;  // the last point of the table lies beyond the line
+      c.tolerance = 10;
+      r = evaluate(c, find);
+      CHECK_FALSE(r.pass);
+      CHECK(r.note.find("1 of 3 points of the reference lie outside of the samples, which reach "
+                        "from 0 to 2 m") != std::string::npos);
+      c.at = 3;  // after the run
+      CHECK(evaluate(c, find).note == "no point of the reference can be compared");
     }
     SUBCASE("units of a reference are those of its headings, unless the deck scales it") {
       const test::TemporaryFolder folder;

@@ -70,7 +70,7 @@ TEST_SUITE("scene") {
         REQUIRE(found.items().size() == 1);
         CHECK(found.items()[0].id == id);
         CHECK(found.items()[0].path == "bodies[0].shape");
-        CHECK(found.items()[0].place.line == 8);
+        CHECK(found.items()[0].place.line == 9);
       }
   }
 

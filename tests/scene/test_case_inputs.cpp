@@ -168,5 +168,8 @@ TEST_SUITE("scene") {
     CHECK(holds(said(claim + "probe: e.kinetic, reference_csv: motion/mm_header.csv}]\n"),
                 "'mm' is not"));
     CHECK(said(claim + "probe: e.kinetic, reference_csv: motion/motion.csv}]\n") == "");
+    CHECK(holds(said("expect: [{name: c, tolerance: 1, reduce: profile, probe: e, reference_csv: "
+                     "motion/motion.csv}]\n"),
+                "E155 expect[0].probe: 'e' is not a profile"));
   }
 }
