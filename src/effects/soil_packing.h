@@ -9,7 +9,7 @@
 namespace sphgeo::packed {
 
 /// State of the soil at the middle of the acoustic step, kept by soil_predict; soil_kick brings the
-/// velocity to its end, soil_state packs it for observers.
+/// velocity to its end.
 template <int Dim>
 struct SoilState;
 

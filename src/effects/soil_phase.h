@@ -144,8 +144,7 @@ void need_soil_packing(Needs& needs, bool parameters) {
   need_soil_records<Dim>(needs, Access::write, parameters);
 }
 
-/// Writes all records of a soil particle but the position from the fields, as predict and
-/// observation do.
+/// Writes all records of a soil particle but the position from the fields.
 template <int Dim, class T>
 class SoilPacking {
  public:

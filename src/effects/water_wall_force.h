@@ -44,11 +44,10 @@ void pack_pressure_gradient(const World<Dim>& world, const NeighborList& list,
   });
 }
 
-/// The reaction: the pair function of the force on water, seen from the wall. `Volume` is the
-/// record with the volume of the water: packed::WaterState, or packed::ObservedWater.
-template <int Dim, template <int> class Volume>
+/// The reaction: the pair function of the force on water, seen from the wall.
+template <int Dim>
 struct WaterForceOnWall {
-  using Water = Volume<Dim>;
+  using Water = packed::WaterState<Dim>;
   WallPair<Dim> wall;
 
   template <class T>

@@ -28,6 +28,8 @@ inline constexpr FieldSpec density_rate{"density_rate", scalar, state, unit::non
                                         "rate of change of the density, Eq. 58"};
 inline constexpr FieldSpec pressure{"pressure", scalar, derived, unit::pressure,
                                     "pressure, Eq. 26"};
+inline constexpr FieldSpec mean_pressure{"mean_pressure", scalar, state, unit::pressure,
+                                         "pressure, mean over the advection step"};
 inline constexpr FieldSpec volume{"volume", scalar, derived, unit::volume,
                                   "volume; an area in 2D, Eq. 27"};
 inline constexpr FieldSpec surface{
@@ -36,14 +38,14 @@ inline constexpr FieldSpec surface{
 inline constexpr FieldSpec normal{"normal", vector, state, unit::none, "outward normal of a wall"};
 inline constexpr FieldSpec reference_position{"reference_position", vector, reference, unit::length,
                                               "position at t = 0"};
+inline constexpr FieldSpec displacement{"displacement", vector, derived, unit::length,
+                                        "displacement since t = 0"};
 inline constexpr FieldSpec reference_normal{"reference_normal", vector, reference, unit::none,
                                             "normal at t = 0"};
 inline constexpr FieldSpec no_slip{"no_slip", scalar, reference, unit::none,
                                    "1 where water sticks to the wall, 0 where it slides"};
 inline constexpr FieldSpec corner{"corner", scalar, reference, unit::none,
                                   "1 behind two walls at once, in the concave corner between them"};
-inline constexpr FieldSpec wall_force{"wall_force", vector, derived, unit::force,
-                                      "force of water and soil on a wall particle"};
 
 // Soil.
 inline constexpr FieldSpec volume_fraction{"volume_fraction", scalar, state, unit::none,
@@ -113,10 +115,11 @@ inline constexpr FieldSpec source{
 inline constexpr FieldSpec source_set{"source_set", tag, reference, unit::none,
                                       "number of that solid's set"};
 // Saved: a probe that is due right after a run went on reads those of the step before.
-inline constexpr FieldSpec water_force{"water_force", vector, state, unit::force,
-                                       "force of water on a interface particle"};
+inline constexpr FieldSpec water_force{
+    "water_force", vector, state, unit::force,
+    "force of water on a particle of a wall or of the interface"};
 inline constexpr FieldSpec soil_force{"soil_force", vector, state, unit::force,
-                                      "force of soil on a interface particle"};
+                                      "force of soil on a particle of a wall or of the interface"};
 inline constexpr FieldSpec mean_water_force{"mean_water_force", vector, state, unit::force,
                                             "water_force, mean over the advection step"};
 inline constexpr FieldSpec mean_soil_force{"mean_soil_force", vector, state, unit::force,
@@ -124,6 +127,8 @@ inline constexpr FieldSpec mean_soil_force{"mean_soil_force", vector, state, uni
 inline constexpr FieldSpec contact_force{
     "contact_force", vector, state, unit::force,
     "force of other solids and of walls on a interface particle"};
+inline constexpr FieldSpec mean_contact_force{"mean_contact_force", vector, state, unit::force,
+                                              "contact_force, mean over the advection step"};
 inline constexpr FieldSpec contact_energy{
     "contact_energy", scalar, state, unit::energy,
     "energy stored in the contacts of a interface particle; J per metre of depth in 2D"};
@@ -149,14 +154,15 @@ inline constexpr const FieldSpec* all[] = {&id,
                                            &density,
                                            &density_rate,
                                            &pressure,
+                                           &mean_pressure,
                                            &volume,
                                            &surface,
                                            &normal,
                                            &reference_position,
+                                           &displacement,
                                            &reference_normal,
                                            &no_slip,
                                            &corner,
-                                           &wall_force,
                                            &volume_fraction,
                                            &volume_fraction_rate,
                                            &initial_volume_fraction,
@@ -188,6 +194,7 @@ inline constexpr const FieldSpec* all[] = {&id,
                                            &mean_water_force,
                                            &mean_soil_force,
                                            &contact_force,
+                                           &mean_contact_force,
                                            &contact_energy,
                                            &cauchy_stress,
                                            &von_mises,

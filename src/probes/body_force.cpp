@@ -17,8 +17,8 @@ struct BodyForceProbe final : Probe {
   static Schema<BodyForceProbe> schema() {
     Schema<BodyForceProbe> s(
         "body_force",
-        "force and torque on a solid by water, soil (means over the advection step) and contact "
-        "(Eqs. 70, 75-79); torques about its centre of mass");
+        "force and torque on a solid by water, soil and contact (Eqs. 70, 75-79), means over the "
+        "advection step; torques about its centre of mass");
     s.required("body", &BodyForceProbe::body, unit::none, "name of the body");
     return s;
   }
@@ -29,7 +29,7 @@ struct BodyForceProbe final : Probe {
   };
   static constexpr std::array<Source, 3> sources{{{"water", &fields::mean_water_force},
                                                   {"soil", &fields::mean_soil_force},
-                                                  {"contact", &fields::contact_force}}};
+                                                  {"contact", &fields::mean_contact_force}}};
 
   std::vector<Column> columns(const Model& model) const override {
     const bool flat = model.dimension == 2;
@@ -54,12 +54,14 @@ struct BodyForceProbe final : Probe {
     inspect_body(model, body, "body", c);
   }
   std::vector<FieldRequest> needs(const Model& model) const override {
-    return {{set_of_body(model, body), &fields::mass}};
+    std::vector<FieldRequest> needs{{set_of_body(model, body), &fields::mass}};
+    for (const Source& source : sources) needs.push_back({"interface", source.field, true});
+    return needs;
   }
 
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
     const std::string set = set_of_body(scene.model(), body);
-    if (!scene.has_set(set)) return;
+    if (!scene.has_set(set) || scene.time() == 0) return;  // no step, no mean
     const std::int32_t wanted = body_index(scene.model(), body);
     const auto m = scene.scalar(set, fields::mass);
     const auto at = scene.vector(set, fields::position);

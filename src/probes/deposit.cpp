@@ -19,7 +19,8 @@ struct DepositProbe final : Probe {
   static Schema<DepositProbe> schema() {
     Schema<DepositProbe> s("deposit",
                            "run-out, height and slope of a heap that is connected to its origin");
-    s.optional("set", &DepositProbe::set, unit::none, "the particle set");
+    s.optional("set", &DepositProbe::set, unit::none, "the particle set")
+        .choices({"water", "soil"});
     s.optional("origin", &DepositProbe::origin, unit::length,
                "origin of distances; its z is the base of heights");
     s.optional("direction", &DepositProbe::direction, unit::none,

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "core/parallel.h"
+#include "core/text.h"
 #include "deck/registry.h"
 #include "deck/schema.h"
 #include "geometry/shapes.h"
@@ -11,12 +11,43 @@
 namespace sphgeo {
 namespace {
 
-/// The scalar field of that name, or nullptr.
-const FieldSpec* scalar_field(const std::string& name) {
-  for (const FieldSpec* f : fields::all)
-    if (f->type == FieldType::scalar && name == f->name) return f;
-  return nullptr;
-}
+/// A scalar field, or one component of another: "pressure", "velocity.x", "stress.xz".
+struct Scalar {
+  const FieldSpec* field = nullptr;  ///< null: there is none of that name
+  int component = 0;
+
+  explicit Scalar(const std::string& name) {
+    const auto dot = name.find('.');
+    const std::string of = name.substr(0, dot), part = dot == name.npos ? "" : name.substr(dot + 1);
+    for (const FieldSpec* f : fields::all) {
+      if (of != f->name) continue;
+      const auto names = components(*f);
+      const auto at = std::find(names.begin(), names.end(), part);
+      if (at == names.end()) return;
+      field = f;
+      component = static_cast<int>(at - names.begin());
+    }
+  }
+  /// Their names; that of a scalar is empty, tags have none.
+  static std::vector<std::string> components(const FieldSpec& f) {
+    switch (f.type) {
+      case FieldType::scalar:
+        return {""};
+      case FieldType::vector:
+        return {"x", "y", "z"};
+      case FieldType::tensor:
+        return {"xx", "yy", "zz", "xy", "yz", "xz"};
+      default:
+        return {};
+    }
+  }
+  std::function<double(Index)> of(const SceneView& scene, const std::string& set) const {
+    if (field->type == FieldType::scalar) return scene.scalar(set, *field);
+    if (field->type == FieldType::vector)
+      return [v = scene.vector(set, *field), k = component](Index i) { return v(i)[k]; };
+    return [v = scene.tensor(set, *field), k = component](Index i) { return v(i)[k]; };
+  }
+};
 
 /// Mean, smallest and largest value of a field over the particles in a region.
 struct MeanProbe final : Probe {
@@ -26,17 +57,17 @@ struct MeanProbe final : Probe {
 
   static Schema<MeanProbe> schema() {
     Schema<MeanProbe> s(
-        "mean",
-        "mean, smallest and largest value of a scalar field over the particles in a region");
+        "mean", "mean, smallest and largest value of a field over the particles in a region");
     s.optional("set", &MeanProbe::set, unit::none, "the particle set");
-    s.required("field", &MeanProbe::field, unit::none, "the scalar field");
+    s.required("field", &MeanProbe::field, unit::none,
+               "the field; of a vector or tensor one component, as velocity.x or stress.xz");
     s.optional("region", &MeanProbe::region, unit::none, "the region; auto: everywhere");
     s.optional("over", &MeanProbe::over, unit::none,
                "a second region, whose mean is the denominator of 'ratio'; auto: no ratio");
     return s;
   }
   std::vector<Column> columns(const Model&) const override {
-    const FieldSpec* f = scalar_field(field);
+    const FieldSpec* f = Scalar(field).field;
     const std::string in = f ? f->unit.symbol : "1";
     std::vector<Column> out{
         {"mean", in, "mean over the particles in the region; empty without particles"},
@@ -47,18 +78,25 @@ struct MeanProbe final : Probe {
     return out;
   }
   std::vector<FieldRequest> needs(const Model&) const override {
-    const FieldSpec* f = scalar_field(field);
+    const FieldSpec* f = Scalar(field).field;
     return {{set, f ? f : &fields::mass}, {set, &fields::position}};
   }
   void inspect(const Model&, CheckContext& c) const override {
-    if (!scalar_field(field))
-      c.error("field", "there is no scalar field '" + field + "'",
-              "'sphgeo list fields' names them");
+    if (Scalar(field).field) return;
+    std::vector<std::string> names;
+    for (const FieldSpec* f : fields::all)
+      for (const std::string& part : Scalar::components(*f))
+        names.push_back(f->name + (part.empty() ? "" : "." + part));
+    const std::string near = suggestion(field, names);
+    c.error("field", "there is no scalar field '" + field + "'",
+            near.empty() ? "'sphgeo list fields' names them; of vectors and tensors give a "
+                           "component, as velocity.x or stress.xz"
+                         : near);
   }
   void sample(const SceneView& scene, std::span<std::optional<double>> out) const override {
-    const FieldSpec* f = scalar_field(field);
-    if (!f || !scene.has_set(set)) return;
-    const auto value = scene.scalar(set, *f);
+    const Scalar wanted(field);
+    if (!wanted.field || !scene.has_set(set)) return;
+    const auto value = wanted.of(scene, set);
     const auto x = scene.vector(set, fields::position);
     const auto mean_in = [&](const std::shared_ptr<const Shape>& shape, double& count) {
       const auto in = [&](Index i) { return !shape || shape->signed_distance(x(i)) < 0; };

@@ -16,6 +16,7 @@ namespace sphgeo {
 struct FieldRequest {
   std::string set;
   const FieldSpec* field;
+  bool optional = false;  ///< the probe does without the field, or the set
 };
 
 /// A measurement requested by a deck. Empty values mean that no particles support it.

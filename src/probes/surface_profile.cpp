@@ -20,7 +20,8 @@ struct SurfaceProfileProbe final : Probe {
   static Schema<SurfaceProfileProbe> schema() {
     Schema<SurfaceProfileProbe> s("surface_profile",
                                   "heights of the topmost surface of a set along a line");
-    s.optional("set", &SurfaceProfileProbe::set, unit::none, "the particle set");
+    s.optional("set", &SurfaceProfileProbe::set, unit::none, "the particle set")
+        .choices({"water", "soil"});
     s.required("from", &SurfaceProfileProbe::from, unit::length,
                "start of the line; its z is ignored");
     s.required("to", &SurfaceProfileProbe::to, unit::length, "end of the line; its z is ignored");

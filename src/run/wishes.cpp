@@ -24,7 +24,7 @@ std::vector<Wish> wishes_of(const Model& model, const std::vector<std::string>& 
   std::vector<Wish> wishes;
   for (const auto& p : model.probes)
     for (const FieldRequest& r : dynamic_cast<const Probe&>(*p).needs(model))
-      if (present(r.set)) wishes.push_back({r.set, r.field->name, "probe " + p->name});
+      if (present(r.set)) wishes.push_back({r.set, r.field->name, "probe " + p->name, r.optional});
   for (const std::string& set : sets)
     if (set != "walls" && set != "interface")
       for (const auto& asked = model.output.frames.fields;

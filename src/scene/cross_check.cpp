@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "core/indices_where.h"
 #include "core/parallel.h"
@@ -142,6 +144,48 @@ void check_lengths(const Model& model, Diagnostics& found) {
   }
 }
 
+// Names of the fields of a set that exist or that some effect of the scene computes.
+template <int Dim>
+std::vector<std::string> fields_of(const World<Dim>& world, const std::string& set) {
+  std::set<std::string> names;
+  for (const auto& [name, field] : world.find(set)->fields()) names.insert(name);
+  const auto& off = world.parameters().without;
+  for (const auto& entry : EffectRegistry::all())
+    if (std::find(off.begin(), off.end(), entry.info.name) == off.end())
+      for (const auto& effect : entry.template bind<Dim>(world).effects)
+        for (const FieldUse& use : effect->needs().fields)
+          if (use.set == set && !use.optional) names.insert(use.field->name);
+  return {names.begin(), names.end()};
+}
+
+// Whether the scene has what a probe reads; if not, says so. `fields` are those of each set that
+// has been looked at.
+template <int Dim>
+bool can_be_read(const Probe& probe, const FieldRequest& r, const World<Dim>& world,
+                 std::map<std::string, std::vector<std::string>>& fields, CheckContext& context) {
+  if (!world.find(r.set)) {
+    std::vector<std::string> names;
+    for (const auto& s : world.sets()) names.push_back(s->name());
+    context.error(context.given("set") ? "set" : "",
+                  fmt::format("probe '{}' needs the particle set '{}', which this scene does not "
+                              "have",
+                              probe.name, r.set),
+                  names.empty() ? "" : "there are: " + in_words(names), "E124");
+    return false;
+  }
+  if (!fields.contains(r.set)) fields[r.set] = fields_of(world, r.set);
+  const std::vector<std::string>& names = fields[r.set];
+  if (std::find(names.begin(), names.end(), r.field->name) != names.end()) return true;
+  context.error(context.given("field") ? "field"
+                : context.given("set") ? "set"
+                                       : "",
+                fmt::format("probe '{}' needs the field '{}', which the set '{}' does not have in "
+                            "this scene",
+                            probe.name, r.field->name, r.set),
+                fmt::format("the fields of '{}' are {}", r.set, in_words(names)), "E125");
+  return false;
+}
+
 template <int Dim>
 void check_probes(const Model& model, const World<Dim>& world, Diagnostics& found) {
   Aabb box;
@@ -153,11 +197,14 @@ void check_probes(const Model& model, const World<Dim>& world, Diagnostics& foun
     box.lo.y() = -INFINITY;
     box.hi.y() = INFINITY;
   }
+  std::map<std::string, std::vector<std::string>> fields;
   for (std::size_t k = 0; k < model.probes.size(); ++k) {
     const std::string path = fmt::format("probes[{}]", k);
     const auto& probe = dynamic_cast<const Probe&>(*model.probes[k]);
     CheckContext context(found, model.places, path, model.dimension, model.resolution);
+    const std::size_t sound = found.items().size();
     probe.inspect(model, context);
+    const bool misread = found.items().size() > sound;  // one reason is enough
     for (const Vec3& at : probe.positions())
       if (!box.grown(model.resolution).contains(at))
         found.warning(
@@ -166,16 +213,7 @@ void check_probes(const Model& model, const World<Dim>& world, Diagnostics& foun
             fmt::format("the scene spans x from {:.4g} to {:.4g} m and z from {:.4g} to {:.4g} m",
                         box.lo.x(), box.hi.x(), box.lo.z(), box.hi.z()));
     for (const FieldRequest& r : probe.needs(model))
-      if (!world.find(r.set)) {
-        std::vector<std::string> names;
-        for (const auto& s : world.sets()) names.push_back(s->name());
-        found.error(
-            "E124", model.place_of(path), path,
-            fmt::format("probe '{}' needs the particle set '{}', which this scene does not have",
-                        probe.name, r.set),
-            names.empty() ? "" : "there are: " + fmt::format("{}", fmt::join(names, ", ")));
-        break;
-      }
+      if (misread || (!r.optional && !can_be_read(probe, r, world, fields, context))) break;
   }
 }
 

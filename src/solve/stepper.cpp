@@ -38,6 +38,7 @@ void Stepper<Dim>::begin_step() {
   // is continued later takes the same steps as one that was longer from the start.
   world_.clock.dt_advection = left_ = plan_.limits().advection;
   start_ = world_.clock.time;
+  world_.clock.in_advection = 0;
 }
 
 template <int Dim>
@@ -61,6 +62,7 @@ bool Stepper<Dim>::advance(const RunHooks& hooks) {
 template <int Dim>
 void Stepper<Dim>::acoustic_step(double dt, double solid_limit) {
   world_.clock.dt_acoustic = dt;
+  world_.clock.in_advection += dt;
   plan_.run(Stage::predict);  // Eq. 96
   plan_.run(Stage::force);    // Eq. 60
   plan_.run(Stage::kick);     // Eqs. 97, 98

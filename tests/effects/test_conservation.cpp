@@ -73,17 +73,18 @@ double momentum_drift(const std::string& precision) {
 
 // Sum of the forces of the walls on the water, and of the water on the walls.
 std::pair<Vec<2>, Vec<2>> action_and_reaction(Rig<2>& rig) {
-  rig.plan->run(Stage::observe);
+  rig.freeze();
+  rig.apply("water_reaction");
   auto& sum = rig.water().vector(fields::acceleration_sum);
   for (Index i = 0; i < sum.size(); ++i) sum[i].setZero();
   rig.apply("water_wall_force");
   const auto& m = rig.water().scalar(fields::mass);
-  const auto& force = rig.walls().vector(fields::wall_force);
+  const auto& force = rig.walls().vector(fields::water_force);
   return {ordered_sum(sum.size(), [&](Index i) -> Vec<2> { return m[i] * sum[i]; }),
           ordered_sum(force.size(), [&](Index i) -> Vec<2> { return force[i]; })};
 }
 
-const std::vector<Wish> wall_force{{"walls", "wall_force", "the test", false}};
+const std::vector<Wish> wall_force{{"walls", "water_force", "the test", false}};
 
 }  // namespace
 

@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Every command and option that README.md and the manual pages name is one that the program has, and
-every command and option that the program has is in a manual page.
+every command and option that the program has is in a manual page. Every probe and every reduction has a row in
+share/doc/probes.md that names a test, and the tests that it names exist.
 
     check_docs.py SPHGEO
 """
+import json
 import re
 import subprocess
 import sys
@@ -103,6 +105,40 @@ def check_readme_table(text, known):
             yield f"README.md: 'sphgeo {command}' has no option '{option}'"
 
 
+def rows_of(markdown):
+    """{name: its row} of the tables whose first cells are names between backticks."""
+    return {name: row for row in re.findall(r"(?m)^\|.*$", markdown) for name in re.findall(r"`(\w+)`", row.split("|")[1])}
+
+
+def reductions(sphgeo):
+    schema = json.loads(subprocess.run([sphgeo, "schema"], capture_output=True, text=True, check=True).stdout)
+    return schema["properties"]["expect"]["items"]["properties"]["reduce"]["enum"]
+
+
+def check_probes(sphgeo):
+    """The table of probes is whole, and its proofs are tests."""
+    page = "share/doc/probes.md"
+    rows = rows_of((ROOT / page).read_text())
+    listed = subprocess.run([sphgeo, "list"], capture_output=True, text=True, check=True).stdout
+    probes = re.findall(r"(?m)^  (\w+) ", listed.split("\nprobes:\n")[1].split("\n\n")[0])
+    for name in probes + reductions(sphgeo):
+        if name not in rows:
+            yield f"{page}: there is no row for '{name}'"
+            continue
+        proofs = re.findall(r"`(tests/[\w/]+\.cpp)`(?:: ([^;|]+))?", rows[name])
+        if not proofs:
+            yield f"{page}: the row of '{name}' names no test"
+        for file, case in proofs:
+            text = (ROOT / file).read_text() if (ROOT / file).is_file() else ""
+            # A title that is too long for a line is two pieces in the source.
+            titles = re.sub(r'"\s*"', "", text)
+            if not text or (case and f'"{case.strip()}' not in titles):
+                yield f"{page}: the row of '{name}' names a test that does not exist: {file} {case}"
+    for name in rows:
+        if name not in probes and name not in reductions(sphgeo):
+            yield f"{page}: there is no probe or reduction '{name}'"
+
+
 def findings(sphgeo):
     known = offered(sphgeo)
     readme = (ROOT / "README.md").read_text()
@@ -118,6 +154,7 @@ def findings(sphgeo):
             yield from check_calls(f"man/{page.name}", text.split("EXAMPLES")[1].split("EXIT")[0], known)
         yield from check_paths(f"man/{page.name}", text)
     yield from check_pages(known)
+    yield from check_probes(sphgeo)
 
 
 def main():

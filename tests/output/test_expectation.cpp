@@ -47,6 +47,9 @@ TEST_SUITE("output") {
     CHECK(value_of(s, "range") == doctest::Approx(12));
     CHECK(value_of(s, "mean") == doctest::Approx(4));
     CHECK(value_of(s, "rms") == doctest::Approx(std::sqrt(28.0)));  // integral of (3t-2)^2 over 4
+    CHECK(value_of(s, "growth") == doctest::Approx(12));
+    CHECK(value_of({{0, 1, 2, 3}, {5, 1, 4, 2}}, "growth") == 3);
+    CHECK(value_of({{0, 1, 2}, {5, 4, 2}}, "growth") == 0);
     CHECK(value_of(s, "slope") == doctest::Approx(3));
     CHECK(value_of(s, "time_of_max") == doctest::Approx(4));
     CHECK(value_of(s, "time_of_min") == doctest::Approx(0));

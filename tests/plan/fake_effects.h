@@ -80,7 +80,7 @@ inline const FakeSpec& fake(int k) {
       {"chain",
        "fake_makes_y",
        Stage::observe,
-       {{&fields::wall_force, write}, {&fields::volume, read}},
+       {{&fields::fluid_force, write}, {&fields::volume, read}},
        true},
       {"chain", "fake_always", Stage::force, {{&fields::density, update}}},
       // The same field in a stage before: what observers need does not serve the step.

@@ -147,7 +147,7 @@ TEST_SUITE("plan") {
       CHECK(plan.effects()[1].because == "asked for by probe amount");
     }
     FakeWorld f("chain");
-    Plan<2> plan(f.world, {{"chain", "wall_force", "probe force", false}});
+    Plan<2> plan(f.world, {{"chain", "fluid_force", "probe force", false}});
     CHECK(names(plan) == std::vector<std::string>{"fake_always", "fake_makes_x", "fake_makes_y"});
     CHECK(plan.effects()[1].because == "asked for by effect fake_makes_y");
     CHECK(plan.effects()[2].because == "asked for by probe force");
@@ -161,7 +161,7 @@ TEST_SUITE("plan") {
     Rig<2> free(pool);
     free.plan_it();
     for (const auto& e : free.plan->effects()) CHECK(e.info.name.find("wall") == std::string::npos);
-    for (const char* name : {"wall_state", "wall_motion", "wall_reaction", "water_wall_force",
+    for (const char* name : {"wall_state", "wall_motion", "water_reaction", "water_wall_force",
                              "water_wall_continuity"})
       CHECK_FALSE(reason_not_used(*free.plan, name).empty());
     CHECK(free.world.find("walls") == nullptr);
@@ -175,22 +175,22 @@ TEST_SUITE("plan") {
     CHECK_FALSE(walled.world.lists().contains({"walls", "water"}));
   }
 
-  TEST_CASE(
-      "a force probe pulls in the reaction on the walls, with its list and the pressure it needs") {
+  TEST_CASE("a force probe pulls in the reaction on the walls, its list, and its mean") {
     const std::string deck = std::string(pool) + pool_walls;
     Rig<2> without(deck);
     without.plan_it();
-    CHECK_FALSE(runs(*without.plan, "wall_reaction"));
-    CHECK_FALSE(runs(*without.plan, "water_pressure"));
-    CHECK_FALSE(without.walls().has(fields::wall_force));
+    for (const char* name : {"water_reaction", "mean_force"})
+      CHECK_FALSE(runs(*without.plan, name));
+    CHECK_FALSE(without.walls().has(fields::water_force));
+    CHECK_FALSE(without.walls().has(fields::mean_water_force));
     Rig<2> with(deck + "probes: [{name: push, type: force, boundary: tank}]\n");
     with.plan_it();
-    CHECK(runs(*with.plan, "wall_reaction"));
-    CHECK(runs(*with.plan, "water_pressure"));
+    CHECK(runs(*with.plan, "water_reaction"));
+    CHECK(runs(*with.plan, "mean_force"));
     CHECK(with.world.lists().contains({"walls", "water"}));
     const auto all = names(*with.plan);
-    CHECK(std::find(all.begin(), all.end(), "water_pressure") <
-          std::find(all.begin(), all.end(), "wall_reaction"));
+    CHECK(std::find(all.begin(), all.end(), "water_reaction") <
+          std::find(all.begin(), all.end(), "mean_force"));
   }
 
   TEST_CASE("a moving wall binds its motion") {

@@ -263,13 +263,19 @@ probes:
         "  - {name: plate, type: wall, shape: {type: box, min: [1.5, 0, 0], max: [1.7, 1, 0.1]}}\n";
     Rig<2> rig(pool(2,
                     "  - {name: f, type: force, boundary: plate}\n  - {name: g, type: force, "
-                    "boundary: tank}\n") +
+                    "boundary: tank}\n"
+                    "  - {name: h, type: force, boundary: plate, about: [1.6, 7, 0.05]}\n") +
                walls);
     rig.plan_it();
-    auto& force = rig.walls().vector(fields::wall_force);
+    auto& force = rig.walls().vector(fields::mean_water_force);
     for (Index i = 0; i < force.size(); ++i) force[i] = Vec<2>(2, -3);
+    CHECK_FALSE(rig.sample(0)[0].has_value());  // before the first step there is no mean
+    rig.world.clock.time = 1;
     CHECK(*rig.sample(0)[0] == doctest::Approx(8 * 2.0));
     CHECK(*rig.sample(0)[1] == doctest::Approx(8 * -3.0));
     CHECK(*rig.sample(1)[0] == doctest::Approx(2.0 * static_cast<double>(force.size() - 8)));
+    // z f_x - x f_z about the origin, and about the centre of the plate.
+    CHECK(*rig.sample(0)[2] == doctest::Approx(0.05 * 16 + 1.6 * 24));
+    CHECK(std::abs(*rig.sample(2)[2]) < 1e-12);
   }
 }

@@ -203,7 +203,9 @@ TEST_SUITE("scene") {
     CHECK(findings(pool + "probes: [{name: far, type: pressure, at: [3, 0, 0.1]}]\n") ==
           Ids{"W123"});
     CHECK(findings(pool + "probes: [{name: p, type: amount, set: soil}]\n") == Ids{"E124"});
-    CHECK(findings(pool + "probes: [{name: p, type: force, boundary: tank}]\n") == Ids{"E124"});
+    CHECK(findings(pool + "probes: [{name: p, type: force, boundary: tank}]\n") == Ids{"E030"});
+    CHECK(findings(pool + "probes: [{name: p, type: mean, field: stress.xx}]\n") == Ids{"E125"});
+    CHECK(findings(pool + "probes: [{name: p, type: sum, of: [q]}]\n") == Ids{"E030"});
   }
 
   TEST_CASE("empty bodies and formulas that are no numbers are found") {

@@ -36,7 +36,7 @@ template <int Dim>
 std::uint64_t state_after(const std::vector<std::string>& overrides, int with_threads, long steps) {
   Rig<Dim> rig(dam_break(Dim), overrides);
   set_threads(with_threads);
-  rig.plan_it({{"walls", "wall_force", "the test", false}});
+  rig.plan_it({{"walls", "mean_water_force", "the test", false}});
   rig.advance(steps);
   rig.plan->run(Stage::observe);
   CHECK(rig.world.clock.acoustic_steps > steps);

@@ -61,7 +61,8 @@ struct Rig {
   void plan_it(std::vector<Wish> wishes = {}) {
     for (const auto& p : model.probes)
       for (const FieldRequest& r : dynamic_cast<const Probe&>(*p).needs(model))
-        wishes.push_back({r.set, r.field->name, "probe " + p->name, false});
+        if (!r.optional || world.find(r.set))
+          wishes.push_back({r.set, r.field->name, "probe " + p->name, r.optional});
     plan = std::make_unique<Plan<Dim>>(world, wishes);
     stepper = std::make_unique<Stepper<Dim>>(world, *plan);
     arrange();
