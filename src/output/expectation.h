@@ -23,7 +23,7 @@ struct ExpectResult {
   double tolerance = 0;
   bool pass = false;
   bool partial = false;  ///< samples reach only a part of the reference
-  std::string note;  ///< why it could not be measured, or what was left out
+  std::string note;      ///< why it could not be measured, or what was left out
 };
 
 /// Finds the series of a probe by its name; nullptr when there is none.

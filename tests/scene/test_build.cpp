@@ -260,9 +260,7 @@ TEST_SUITE("scene") {
     CHECK(a == b);
     CHECK(a.size() == 60);
     CHECK(flat.scene.body_particles.size() == 1);
-    CHECK(flat.scene.body_particles[0].name == "pool");
     CHECK(flat.scene.body_particles[0].particles == 60);
-    CHECK(!flat.scene.body_particles[0].filling.relaxed);
     CHECK(flat.scene.boundary_particles[0].second == flat.walls().size());
   }
 
