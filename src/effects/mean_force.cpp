@@ -4,10 +4,10 @@
 namespace sphgeo {
 namespace {
 
-/// Mean over the advection step of what the acoustic steps did, for probes. The value of one moment
-/// is not what moved anything: each rearrangement shakes the pressure, above all beside walls that
-/// move, and the steps after it calm it down. On a cylinder towed through water the moments after
-/// the rearrangements add up to an impulse with the wrong sign.
+/// Mean over the advection step of what the acoustic steps did, for probes. The value at the end of
+/// the step, after particles are arranged and their density is summed anew, is not what moved
+/// anything: on a cylinder towed through water these values add up to an impulse with the wrong
+/// sign. The pressure of the water itself differs by some pascals only (share/doc/probes.md).
 template <int Dim>
 class MeanForce final : public Effect<Dim> {
  public:
