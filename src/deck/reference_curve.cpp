@@ -53,22 +53,30 @@ std::vector<double> converted(const CsvTable& table, const std::string& name,
   return values;
 }
 
-// Whether a point is left to compare with.
+// Whether points are left to compare with, and whether the norm can divide by them.
 void check_usable(const ReferenceCurve& curve, const Expect& claim) {
   const std::string& path = claim.reference_csv->path;
-  double first = INFINITY, last = -INFINITY;
+  double first = INFINITY, last = -INFINITY, low = INFINITY, high = -INFINITY;
   for (std::size_t k = 0; k < curve.x.size(); ++k) {
-    const double x = curve.x[k];
-    if (std::isnan(x) || std::isnan(curve.y[k])) continue;
-    if (!(claim.from && x < *claim.from) && !(claim.to && x > *claim.to)) return;
+    const double x = curve.x[k], y = curve.y[k];
+    if (std::isnan(x) || std::isnan(y)) continue;
     first = std::min(first, x);
     last = std::max(last, x);
+    if ((claim.from && x < *claim.from) || (claim.to && x > *claim.to)) continue;
+    low = std::min(low, y);
+    high = std::max(high, y);
   }
   if (first > last) throw TableError(path + ": no row has both a time and a value");
-  throw TableError(
-      fmt::format("{}: no row lies between 'from' and 'to': the curve reaches from "
-                  "t = {} to {} s",
-                  path, exact(first), exact(last)));
+  if (low > high)
+    throw TableError(
+        fmt::format("{}: no row lies between 'from' and 'to': the curve reaches from "
+                    "t = {} to {} s",
+                    path, exact(first), exact(last)));
+  if (claim.norm == "relative_l2" ? low == 0 && high == 0 : low == high)
+    throw TableError(
+        fmt::format("{}: all values of the curve are {}, and norm: {} divides by their {}{}", path,
+                    exact(low), claim.norm, claim.norm == "relative_l2" ? "mean square" : "range",
+                    low == 0 ? "" : "; say norm: relative_l2"));
 }
 
 // The product, or an error when it is too large.

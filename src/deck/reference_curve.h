@@ -18,7 +18,8 @@ struct ReferenceCurve {
 /// profile, to metres) and to `unit` of the probe's column where it is known. Where the deck scales
 /// a column itself (x_scale, y_scale, scale), plain numbers get their meaning from it; a unit that
 /// says something else than the factor is an error. Throws IoError, or TableError with file and
-/// line for a table that cannot be used, or has no point between `from` and `to`.
+/// line for a table that cannot be used, has no point between `from` and `to`, or only one value
+/// where the norm is by the range.
 ReferenceCurve read_reference(const Expect& claim, std::optional<std::string_view> unit);
 
 }  // namespace sphgeo

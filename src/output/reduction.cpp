@@ -136,7 +136,8 @@ std::optional<CurveDifference> compare_curve(const Samples& s, std::span<const d
     d.max = std::max(d.max, std::abs(*value - y[i]));
   }
   const double range = highest - lowest;
-  if (d.used == 0 || !(range > 0)) return {};
+  if (d.used == 0) return {};
+  // Of a constant reference only relative_l2 is finite.
   d.l2 = std::sqrt(squares / d.used) / range;
   d.relative_l2 = std::sqrt(squares / reference);
   d.max /= range;

@@ -49,7 +49,7 @@ struct CurveDifference {
 };
 
 /// Compares at the abscissae x of the reference (NaN points are ignored). Empty when no point can
-/// be used or the reference is constant.
+/// be used. Of a constant reference only relative_l2 is finite.
 std::optional<CurveDifference> compare_curve(const Samples& samples, std::span<const double> x,
                                              std::span<const double> y);
 

@@ -100,6 +100,7 @@ void run_reference(std::string_view input) {
         std::optional<std::string_view>("m/s"), std::optional<std::string_view>("")}) {
     Expect claim;
     claim.reference_csv = FilePath{file.path()};
+    if (unit == "Pa") claim.norm = "relative_l2";
     for (const bool scaled : {false, true}) {
       if (scaled) claim.x_scale = claim.y_scale = 0.5;
       try {

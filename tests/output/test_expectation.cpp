@@ -114,7 +114,10 @@ TEST_SUITE("output") {
     CHECK(d.max == doctest::Approx(0.1 / 2));
     CHECK(d.l2 == doctest::Approx(std::sqrt(0.02 / 4) / 2));
     CHECK_FALSE(compare_curve({}, x, y));
-    CHECK_FALSE(compare_curve(s, std::vector<double>{0, 1}, std::vector<double>{1, 1}));
+    const std::vector<double> constant{1, 1};
+    const CurveDifference flat = compare_curve(s, std::vector<double>{0, 1}, constant).value();
+    CHECK(std::isfinite(flat.relative_l2));
+    CHECK_FALSE(std::isfinite(flat.l2));
   }
 
   TEST_CASE("claims of a deck are measured and judged") {
@@ -251,6 +254,10 @@ TEST_SUITE("output") {
       CHECK(compared("t [s],z [cmm]\n0,0\n1,1\n").note.find("there is no unit 'cmm'") !=
             std::string::npos);
       CHECK(compared("t [s],z\n,0\n1,\n").note.find("no row has both") != std::string::npos);
+      CHECK(compared("t,z\n0,1\n1,1\n")
+                .note.find("all values of the curve are 1, and norm: l2 "
+                           "divides by their range; say norm: "
+                           "relative_l2") != std::string::npos);
       CHECK(compared("t [s],z\n3,0\n4,1\n")
                 .note.find("no row lies between 'from' and 'to': the "
                            "curve reaches from t = 3 to 4 s") != std::string::npos);
