@@ -50,17 +50,18 @@ inline Energies soil_energies(const SceneView& scene) {
   const Vec3 g = scene.parameters().gravity;
   e.kinetic = ordered_sum(n, [&](Index i) { return 0.5 * m(i) * v(i).squaredNorm(); });
   e.potential = ordered_sum(n, [&](Index i) { return -m(i) * g.dot(x(i)); });
-  std::vector<std::pair<double, double>> moduli;  // 2 G, 18 K by body
+  // 1 / 2G, 1 / 18K by body; what has no stiffness does not deform and stores nothing.
+  std::vector<std::pair<double, double>> compliance;
   for (const SoilPart& p : scene.parameters().soil.of)
-    moduli.emplace_back(p.is_soil ? 2 * p.constants.shear : 1,
-                        p.is_soil ? 18 * p.constants.bulk : 1);
+    if (p.constants.bulk > 0)
+      compliance.emplace_back(1 / (2 * p.constants.shear), 1 / (18 * p.constants.bulk));
+    else compliance.emplace_back(0, 0);
   e.internal = ordered_sum(n, [&](Index i) {
     const Sym3 s = stress(i);
     const double numbers[6] = {s[0], s[1], s[2], s[3], s[4], s[5]};
     const StressInvariants<double> invariants(numbers);
-    const auto& [two_shear, bulk_18] = moduli[static_cast<std::size_t>(part(i))];
-    return volume(i) *
-           (invariants.second / two_shear + invariants.first * invariants.first / bulk_18);
+    const auto& [shear, bulk] = compliance[static_cast<std::size_t>(part(i))];
+    return volume(i) * (invariants.second * shear + invariants.first * invariants.first * bulk);
   });
   return e;
 }

@@ -217,26 +217,31 @@ void check_probes(const Model& model, const World<Dim>& world, Diagnostics& foun
   }
 }
 
+bool is_used(const Model& model, const MaterialSpec* material) {
+  return std::any_of(model.bodies.begin(), model.bodies.end(),
+                     [&](const Body& b) { return model.material(b.material) == material; });
+}
+
 // A skeleton that water alone touches needs no stiffness: what else touches it is repelled with it,
 // and of soil alone it sets the time step.
 template <int Dim>
 void check_stiffness(const Model& model, const World<Dim>& world, Diagnostics& found) {
+  if (!world.find("soil")) return;
+  const SoilParameters& soils = world.parameters().soil;
   const bool solids = std::any_of(world.sets().begin(), world.sets().end(),
                                   [](const auto& s) { return s->phase() == "solid"; });
-  if (!world.find("soil") || (world.find("water") && !solids)) return;
-  for (const Body& body : model.bodies) {
-    const auto* soil = dynamic_cast<const Soil*>(model.material(body.material));
-    if (!soil || soil->youngs_modulus) continue;
-    for (std::size_t k = 0; k < model.materials.size(); ++k) {
-      if (model.materials[k].get() != soil) continue;
-      const std::string path = fmt::format("materials[{}]", k);
-      found.error("E154", model.place_of(path), path,
-                  fmt::format("soil '{}' has no youngs_modulus, and {}", soil->name,
-                              solids ? "solids can touch it"
-                                     : "there is no water, which alone sets a time step"),
-                  "give it, as in 'youngs_modulus: 10 MPa'");
-    }
-    return;
+  const char* needed = solids                 ? "solids can touch it"
+                       : soils.deformable     ? "soil that deforms can touch it"
+                       : !world.find("water") ? "there is no water, which alone sets a time step"
+                                              : nullptr;
+  if (!needed) return;
+  for (std::size_t k = 0; k < model.materials.size(); ++k) {
+    const auto* soil = dynamic_cast<const Soil*>(model.materials[k].get());
+    if (!soil || soil->youngs_modulus || !is_used(model, soil)) continue;
+    const std::string path = fmt::format("materials[{}]", k);
+    found.error("E154", model.place_of(path), path,
+                fmt::format("soil '{}' has no youngs_modulus, and {}", soil->name, needed),
+                "give it, as in 'youngs_modulus: 10 MPa'");
   }
 }
 
@@ -246,7 +251,8 @@ void check_coupling(const Model& model, const World<Dim>& world, Diagnostics& fo
   if (!world.find("soil") || !world.find("water")) return;
   for (std::size_t k = 0; k < model.materials.size(); ++k) {
     const auto* soil = dynamic_cast<const Soil*>(model.materials[k].get());
-    if (!soil || soil->drag != "auto" || soil->drag_law() != "none") continue;
+    if (!soil || soil->drag != "auto" || soil->drag_law() != "none" || !is_used(model, soil))
+      continue;
     const std::string path = fmt::format("materials[{}]", k);
     found.warning("W130", model.place_of(path), path,
                   fmt::format("water passes through soil '{}' without drag", soil->name),

@@ -97,7 +97,7 @@ TEST_SUITE("deck") {
     const std::string resolved = resolved_yaml(first);
     CAPTURE(resolved);
     for (const char* part :
-         {"limiter: 3", "cfl_acoustic: 0.4", "sound_speed: auto", "filling: lattice",
+         {"limiter: 3", "cfl_acoustic: 0.4", "sound_speed: auto", "filling: \"auto\"",
           "friction_angle: 0.5", "rounding: 0.03333333333333333"}) {
       CHECK(resolved.find(part) != std::string::npos);
     }

@@ -74,6 +74,24 @@ TEST_SUITE("scene") {
       }
   }
 
+  TEST_CASE("a skeleton without a stiffness stores no energy") {
+    test::Rig<2> rig(
+        "dimension: 2\nresolution: 0.05\nend_time: 1\nmaterials:\n"
+        "  - {name: plug, type: soil, density: 2600, volume_fraction: 0.6, skeleton: fixed, "
+        "grain_size: 5 mm}\n"
+        "  - {name: water, type: water, max_speed: 5}\n"
+        "bodies:\n"
+        "  - {name: bed, material: plug, shape: {type: box, min: [0, 0, 0], max: [0.5, 1, 0.2]}}\n"
+        "  - {name: pool, material: water, shape: {type: box, min: [0, 0, 0.2], max: [0.5, 1, "
+        "0.4]}}\n"
+        "probes: [{name: e, type: energy, set: soil}]\n");
+    rig.plan_it();
+    rig.advance(2);
+    const auto row = rig.sample(0);
+    CHECK(row.at(2) == 0);                    // internal
+    CHECK(std::isfinite(row.at(1).value()));  // potential
+  }
+
   TEST_CASE("a skeleton that does not deform needs a stiffness only beside solids and alone") {
     const auto ids = [](const std::string& bodies) {
       const Model model = read_deck_text(
@@ -81,6 +99,8 @@ TEST_SUITE("scene") {
           "  - {name: plug, type: soil, density: 2600, volume_fraction: 0.6, skeleton: fixed, "
           "grain_size: 5 mm}\n"
           "  - {name: stone, type: rigid, density: 2500}\n"
+          "  - {name: sand, type: soil, density: 2600, volume_fraction: 0.6, youngs_modulus: 1e6, "
+          "friction_angle: 30 deg}\n"
           "  - {name: water, type: water, max_speed: 5}\n"
           "bodies:\n  - {name: bed, material: plug, shape: {type: box, min: [0, 0, 0], max: [1, "
           "1, 0.5]}}\n" +
@@ -95,6 +115,7 @@ TEST_SUITE("scene") {
     const std::string above = ", shape: {type: box, min: [0, 0, 0.5], max: [1, 1, 0.7]}}\n";
     CHECK(ids("  - {name: pool, material: water" + above) == "");
     CHECK(ids("  - {name: block, material: stone" + above) == "E154 ");
+    CHECK(ids("  - {name: bank, material: sand" + above) == "E154 ");
     CHECK(ids("") == "E154 ");
   }
 }
