@@ -7,6 +7,7 @@
 #include <ctime>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "core/parallel.h"
 #include "core/state_io.h"
@@ -32,7 +33,10 @@ class QuietWatch {
  public:
   double seconds() const {
     const double shared = shared_processor_seconds() - shared_;
-    return std::max(0.0, loop_processor_seconds() - processor_ - shared * (1 - 1.0 / threads()));
+    // More threads than processors take turns.
+    const double at_once =
+        std::clamp<double>(threads(), 1, std::max(1u, std::thread::hardware_concurrency()));
+    return std::max(0.0, loop_processor_seconds() - processor_ - shared * (1 - 1 / at_once));
   }
 
  private:
@@ -60,11 +64,11 @@ struct Spent {
 /// What a run has spent is part of its state: a resumed run goes on counting, with another number
 /// of threads perhaps.
 inline void put_spent(StateSink& sink, const std::string& name, const Spent& spent) {
-  sink.put(name, std::array{spent.seconds, spent.processor, spent.offered});
+  sink.put(name + "_seconds", std::array{spent.seconds, spent.processor, spent.offered});
 }
 inline Spent spent_of(const StateSource& source, const std::string& name) {
   std::array<double, 3> v{};
-  source.get(name, std::span<double>(v));
+  source.get(name + "_seconds", std::span<double>(v));
   return {.seconds = v[0], .processor = v[1], .offered = v[2]};
 }
 

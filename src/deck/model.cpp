@@ -24,7 +24,7 @@ Schema<Body> Body::schema() {
   s.optional(
        "filling", &Body::filling, unit::none,
        "lattice: points of a square (cubic) lattice; relaxed: body-fitted by relaxation; auto: "
-       "relaxed for solids with faces that are not along the axes")
+       "relaxed for rigid solids with faces that are not along the axes")
       .choices({"auto", "lattice", "relaxed"});
   s.optional("velocity", &Body::velocity, unit::speed, "initial velocity, formulas of x, y, z")
       .only_of("xyz");

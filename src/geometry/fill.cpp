@@ -202,6 +202,35 @@ std::vector<Vec3> fill_lattice(const Shape& shape, double dp, int dim, const Aab
   });
 }
 
+FilledBox fill_box(const Box& shape, double dp, int dim) {
+  const Aabb box = in_scene(shape.box(), dim);
+  if (const double lattice = lattice_points(box, dp, dim); !(lattice <= largest_fill))
+    refuse_absurd(lattice);
+  FilledBox out;
+  Index rows[3] = {1, 1, 1};
+  Vec3 spacing = Vec3::Constant(dp);
+  for (int k = 0; k < 3; ++k) {
+    if (k == 1 && dim == 2) continue;
+    const double cells = (box.hi[k] - box.lo[k]) / dp, whole = std::round(cells);
+    rows[k] = static_cast<Index>(whole);
+    if (rows[k] == 0) return out;
+    // Round-off of a millionth of a row, as in fill_lattice.
+    if (std::abs(cells - whole) > 1e-6) spacing[k] = (box.hi[k] - box.lo[k]) / whole;
+    out.stretch = std::max(out.stretch, std::abs(spacing[k] / dp - 1));
+  }
+  out.volume =
+      out.stretch > 0 ? (dim == 3 ? spacing.prod() : spacing.x() * spacing.z()) : std::pow(dp, dim);
+  out.at.resize(static_cast<std::size_t>(rows[0] * rows[1] * rows[2]));
+  parallel_for(static_cast<Index>(out.at.size()), [&](Index i) {
+    const Index row[3] = {i % rows[0], i / rows[0] % rows[1], i / rows[0] / rows[1]};
+    Vec3& p = out.at[static_cast<std::size_t>(i)];
+    for (int k = 0; k < 3; ++k)
+      p[k] =
+          k == 1 && dim == 2 ? 0.0 : box.lo[k] + (static_cast<double>(row[k]) + 0.5) * spacing[k];
+  });
+  return out;
+}
+
 double cut_volume(const Shape& shape, double dp, int dim) {
   const Aabb box = in_scene(shape.box().grown(dp), dim);
   refuse_unbounded(box);

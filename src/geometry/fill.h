@@ -24,6 +24,21 @@ double estimate_fill(const Shape& shape, double dp, int dim, const Aabb& clip);
 std::vector<Vec3> fill_lattice(const Shape& shape, double dp, int dim, const Aabb& clip = {},
                                std::optional<Vec3> origin = std::nullopt);
 
+/// Points of a body and the volume (area in 2D) that each stands for.
+struct FilledBox {
+  std::vector<Vec3> at;
+  double volume = 0;
+  double stretch = 0;  ///< largest |spacing / dp - 1| along an axis
+};
+
+struct Box;
+
+/// A lattice that fits a box of any size: the nearest whole number of rows along each axis, evenly
+/// divided, so that all outer rows lie half a spacing below the faces and the volume is that of the
+/// box. Of whole multiples of dp it is the lattice of fill_lattice, bit by bit. No points where a
+/// side is shorter than half a spacing. Throws as fill_lattice.
+FilledBox fill_box(const Box& box, double dp, int dim);
+
 /// Volume (area in 2D) of the shape, the cells of fill_lattice's lattice cut by the surface: exact
 /// for boxes, good to the square of the spacing for smooth shapes. Throws as fill_lattice.
 double cut_volume(const Shape& shape, double dp, int dim);

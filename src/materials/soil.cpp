@@ -20,7 +20,7 @@ Schema<Soil> Soil::schema() {
       .equation("Eq. 1");
   s.optional("youngs_modulus", &Soil::youngs_modulus, unit::pressure,
              "Young's modulus E of the skeleton; auto: it does not deform and nothing but water "
-             "touches it (skeleton: fixed or prescribed)")
+             "touches it (skeleton: fixed)")
       .above(0);
   s.optional("poisson_ratio", &Soil::poisson_ratio, unit::none,
              "Poisson's ratio nu of the skeleton")
@@ -89,8 +89,8 @@ Schema<Soil> Soil::schema() {
       c.error("hydraulic_conductivity",
               "grain_size and hydraulic_conductivity belong to two drag laws",
               "give one of them, or choose with 'drag: ergun' or 'drag: darcy'");
-    if (m.moves_by_forces() && !m.youngs_modulus)
-      c.error("", "missing key 'youngs_modulus': the skeleton deforms",
+    if (m.skeleton != "fixed" && !m.youngs_modulus)
+      c.error("", "missing key 'youngs_modulus': stresses arise in a skeleton that moves",
               "give it, as in 'youngs_modulus: 10 MPa', or 'skeleton: fixed' for soil that stays "
               "where it is",
               "E011");
@@ -111,7 +111,7 @@ Schema<Soil> Soil::schema() {
     if (m.friction_angle && m.friction)
       c.error("friction", "the friction is given twice",
               "give friction_angle or friction, not both");
-    if (m.moves_by_forces() && !m.friction_angle && !m.friction)
+    if (m.skeleton != "fixed" && !m.friction_angle && !m.friction)
       c.error("", "the soil has no friction",
               "give friction_angle (0 deg is allowed) or friction, or plasticity: none");
     // With more dilation than friction plastic flow would produce energy.

@@ -13,7 +13,7 @@ namespace sphgeo {
 struct Soil final : MaterialSpec {
   double density = 0;                         ///< of the grains, rho^s, kg/m3
   std::optional<double> volume_fraction;      ///< n^s at t = 0, unless a body gives its own
-  std::optional<double> youngs_modulus;       ///< E of the skeleton, Pa; needed where it deforms
+  std::optional<double> youngs_modulus;       ///< E of the skeleton, Pa; needed unless it is fixed
   double poisson_ratio = 0.3;                 ///< nu
   std::string plasticity = "drucker_prager";  ///< drucker_prager | none
   std::optional<double> friction_angle;       ///< phi, rad

@@ -129,6 +129,13 @@ void CsvWriter::row(std::span<const double> values) {
 
 void CsvWriter::flush(bool to_disk) {
   last_flush_ = std::chrono::steady_clock::now();
+  // Rows of a file without a name, or behind a gap, are lost when the run ends.
+  struct stat file {};
+  if (::fstat(descriptor_, &file) == 0 && S_ISREG(file.st_mode)) {
+    if (file.st_nlink == 0) throw IoError(path_, "was removed while the run was writing it");
+    if (file.st_size != static_cast<off_t>(flushed_))
+      throw IoError(path_, "was changed by another program while the run was writing it");
+  }
   if (!pending_.empty()) {
     try {
       write_all(descriptor_, pending_.data(), pending_.size(), path_);
@@ -145,10 +152,6 @@ void CsvWriter::flush(bool to_disk) {
 }
 
 void CsvWriter::wait_for_disk() const {
-  // Rows of a file without a name are lost when the run ends.
-  struct stat file {};
-  if (::fstat(descriptor_, &file) == 0 && file.st_nlink == 0)
-    throw IoError(path_, "was removed while the run was writing it");
   if (::fsync(descriptor_) != 0) throw_io_error(path_, "cannot flush to the disk", errno);
 }
 

@@ -43,6 +43,11 @@ void measure_curve(const Expect& e, Samples samples, const std::string& unit,
   for (double& v : samples.y) v = (v + e.shift) / e.scale;
   for (double& v : x)  // a point outside of the window is ignored, also for the range
     if ((e.from && v < *e.from) || (e.to && v > *e.to)) v = std::nan("");
+  // Round-off at the ends is no difference of range.
+  if (!samples.t.empty())
+    for (double& v : x)
+      for (const double bound : {samples.t.front(), samples.t.back()})
+        if (std::abs(v - bound) < 1e-9 * (samples.t.back() - samples.t.front())) v = bound;
   const std::optional<CurveDifference> d = compare_curve(samples, x, y);
   if (!d) {
     result.note = "no point of the reference can be compared";
@@ -59,19 +64,29 @@ void measure_curve(const Expect& e, Samples samples, const std::string& unit,
       e.reduce == "profile" ? "" : ": 'from' and 'to' say which part is claimed");
 }
 
-/// The heights of a profile at one time, over the distance along its line.
+/// The value of a column at a time, between two rows that both have one.
+std::optional<double> value_at(const Series& series, std::size_t column, double time) {
+  const auto t = series.times();
+  const auto after = std::lower_bound(t.begin(), t.end(), time);
+  if (after == t.end()) return {};
+  const auto k = static_cast<std::size_t>(after - t.begin());
+  const auto values = series.column(column);
+  if (t[k] == time) return std::isfinite(values[k]) ? std::optional(values[k]) : std::nullopt;
+  if (k == 0) return {};
+  const double share = (time - t[k - 1]) / (t[k] - t[k - 1]);
+  const double value = (1 - share) * values[k - 1] + share * values[k];
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+/// The heights of a profile at one time, over the distance along its line; NaN where there is none.
 Samples profile(const Expect& e, const Series& series) {
   Samples out;
+  if (series.times().empty()) return out;
   for (std::size_t k = 0; k < series.columns().size(); ++k) {
     if (!series.columns()[k].along) continue;
-    const Samples all = cut(series.times(), series.column(k), {}, {});
-    const std::optional<double> value = e.at ? interpolate(all, *e.at)
-                                        : all.y.empty() || all.t.back() < series.times().back()
-                                            ? std::nullopt
-                                            : std::optional(all.y.back());
-    if (!value) continue;
     out.t.push_back(*series.columns()[k].along);
-    out.y.push_back(*value);
+    out.y.push_back(
+        value_at(series, k, e.at.value_or(series.times().back())).value_or(std::nan("")));
   }
   return out;
 }
@@ -123,9 +138,20 @@ ExpectResult evaluate(const Expect& e, const SeriesLookup& series) {
                           ? columns.begin()
                           : std::find_if(columns.begin(), columns.end(),
                                          [&](const Column& c) { return c.name == source.column; });
-  const auto values = source.series->column(static_cast<std::size_t>(column - columns.begin()));
+  const auto index = static_cast<std::size_t>(column - columns.begin());
+  const auto values = source.series->column(index);
+  const auto times = source.series->times();
+  const double end = times.empty() ? 0 : std::min(times.back(), e.to.value_or(times.back()));
   const Samples samples = cut(source.series->times(), values, e.from, e.to);
   try {
+    if (const bool last = e.reduce == "last"; last || e.reduce == "at") {
+      const double when = last ? end : *e.at;
+      if (!times.empty() && !value_at(*source.series, index, when)) {
+        result.note =
+            fmt::format("there is no value at t = {:.6g} s{}", when, last ? ", the end" : "");
+        return result;
+      }
+    }
     if (e.reduce == "profile") measure_curve(e, profile(e, *source.series), column->unit, result);
     else if (e.reduce == "curve") measure_curve(e, samples, column->unit, result);
     else measure_number(e, samples, result);

@@ -126,7 +126,7 @@ std::optional<CurveDifference> compare_curve(const Samples& s, std::span<const d
     lowest = std::min(lowest, y[i]);
     highest = std::max(highest, y[i]);
     const std::optional<double> value = interpolate(s, x[i]);
-    if (!value) {
+    if (!value || std::isnan(*value)) {
       ++d.skipped;
       continue;
     }

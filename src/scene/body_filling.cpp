@@ -9,6 +9,7 @@
 #include "core/parallel.h"
 #include "geometry/fill.h"
 #include "geometry/relaxation.h"
+#include "geometry/shapes.h"
 #include "materials/solid.h"
 
 namespace sphgeo {
@@ -17,18 +18,22 @@ FillingChoice filling_of(const Body& body, const Model& model) {
   if (body.filling != "auto") return {body.filling == "relaxed", "as the deck says"};
   const SolidMaterial* solid = solid_of(model, body);
   if (!solid) return {false, "as the walls beside water and soil"};
+  if (!solid->rigid()) return {false, "an elastic solid with sharp or thin parts needs one"};
   if (body.shape->along_axes()) return {false, "its faces lie along the axes"};
-  if (!solid->rigid() && model.numerics.solid_gradient == "quadratic")
-    return {false, "solid_gradient: quadratic asks for one"};
-  return {true, "its faces do not lie along the axes"};
+  return {true, "no lattice fits its shape"};
 }
 
 namespace {
 
 /// Throws Error (usage) for shapes that are unbounded or too large.
 BodyPoints fill_shape(const Body& body, const Model& model, double dp) {
-  if (!filling_of(body, model).relaxed)
+  if (!filling_of(body, model).relaxed) {
+    if (const auto* box = dynamic_cast<const Box*>(body.shape.get())) {
+      FilledBox filled = fill_box(*box, dp, model.dimension);
+      return {std::move(filled.at), filled.volume};
+    }
     return {fill_lattice(*body.shape, dp, model.dimension), std::pow(dp, model.dimension)};
+  }
   RelaxedPositions relaxed = relax_fill(*body.shape, dp, model.dimension);
   return {std::move(relaxed.at), relaxed.volume};
 }

@@ -21,9 +21,11 @@ struct FillingChoice {
   std::string because;  ///< half a sentence
 };
 
-/// What `filling` says; auto: relaxed for solids with faces that are not along the axes. A disc cut
-/// out of a lattice is a staircase: it rolls and rises as its stairs allow. Water and soil stand on
-/// the lattice of the walls beside them.
+/// What `filling` says; auto: relaxed for rigid solids with faces that are not along the axes. A
+/// disc cut out of a lattice is a staircase: it rolls and rises as its stairs allow. Elastic solids
+/// stay on a lattice: relaxed, those with acute corners or thinner than two spacings burst without
+/// a load, as the gradient of Eq. 66 has too few neighbors there. Water and soil stand on the
+/// lattice of the walls beside them.
 FillingChoice filling_of(const Body& body, const Model& model);
 
 /// Fills the shape of a body as filling_of() says, displaced by the deck's jitter; or with the

@@ -124,7 +124,8 @@ void check_thickness(const Model& model, const World<Dim>& world, const std::vec
   const double dp = model.resolution;
   const auto in_some_solid = [&](const Vec3& at) {
     return std::any_of(solids.begin(), solids.end(), [&](const Solid& s) {
-      return s.shape && s.in_place && s.shape->box().contains(at) && s.shape->bound(at) < 0;
+      return s.shape && s.in_place && s.shape->box().contains(at) &&
+             s.shape->bound(at) < 1e-6 * dp;  // also on a joint of two
     });
   };
   const auto& x = walls->vector(fields::position);

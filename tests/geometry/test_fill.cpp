@@ -30,6 +30,44 @@ TEST_SUITE("geometry") {
     }
   }
 
+  TEST_CASE("fill: a box of any size is filled from face to face") {
+    for (const int dim : {2, 3}) {
+      Box b;
+      b.flat = dim == 2;
+      b.min = {0.1, -0.2, 0.3};
+      for (const Vec3& rows : {Vec3(21, 7, 13), Vec3(20.6, 7.4, 12.51), Vec3(1.4, 3, 0.6)}) {
+        CAPTURE(rows.x());
+        const double dp = 0.03;
+        b.max = b.min + dp * rows;
+        const FilledBox filled = fill_box(b, dp, dim);
+        Aabb box;
+        for (const Vec3& p : filled.at) box.extend(p);
+        double size = 1, n = 1;
+        for (int k = 0; k < 3; ++k) {
+          if (k == 1 && dim == 2) continue;
+          const double spacing = rows[k] * dp / std::round(rows[k]);
+          CHECK(box.lo[k] - b.min[k] == doctest::Approx(spacing / 2));
+          CHECK(b.max[k] - box.hi[k] == doctest::Approx(spacing / 2));
+          CHECK(filled.stretch >= std::abs(spacing / dp - 1) - 1e-12);
+          size *= rows[k] * dp;
+          n *= std::round(rows[k]);
+        }
+        CHECK(static_cast<double>(filled.at.size()) == n);
+        CHECK(n * filled.volume == doctest::Approx(size).epsilon(1e-12));
+      }
+      // Of whole multiples: the lattice of all other shapes, bit by bit.
+      b.max = b.min + 0.03 * Vec3(21, 7, 13);
+      const FilledBox filled = fill_box(b, 0.03, dim);
+      CHECK(filled.at == fill_lattice(b, 0.03, dim));
+      CHECK(filled.volume == std::pow(0.03, dim));
+      CHECK(filled.stretch == 0);
+      b.max.x() = b.min.x() + 0.01;  // less than half a row
+      CHECK(fill_box(b, 0.03, dim).at.empty());
+      b.max.x() = b.min.x() + 1e9;
+      CHECK_THROWS_AS(fill_box(b, 1e-3, dim), Error);
+    }
+  }
+
   TEST_CASE("fill: area and volume of curved shapes within 1 %, points inside, each once") {
     const ShapePtr disc = shape_of("{type: sphere, center: [0, 0, 0], radius: 1}", 2);
     const auto in_plane = fill_lattice(*disc, 0.02, 2);

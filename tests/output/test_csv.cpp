@@ -1,6 +1,8 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstring>
+#include <filesystem>
 #include <limits>
 #include <vector>
 
@@ -101,6 +103,13 @@ TEST_SUITE("output") {
     std::filesystem::remove(folder / "a.csv");
     csv.row(Row{1, 2, 3});
     CHECK_THROWS_WITH_AS(csv.flush(true), doctest::Contains("was removed while"), IoError);
+    for (const char* text : {"", "a line\n"}) {
+      CsvWriter other(folder / "b.csv", "t", columns);
+      other.flush(true);
+      std::filesystem::resize_file(folder / "b.csv", std::strlen(text));
+      other.row(Row{1, 2, 3});
+      CHECK_THROWS_WITH_AS(other.flush(true), doctest::Contains("was changed by"), IoError);
+    }
   }
 
   TEST_CASE("a series keeps and writes its samples") {

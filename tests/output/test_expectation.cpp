@@ -231,6 +231,41 @@ TEST_SUITE("output") {
       CHECK_FALSE(r.pass);
       CHECK(r.note.find("1 of 3 points of the reference lie outside of the samples, which reach "
                         "from 0 to 2 m") != std::string::npos);
+      // Where a height is missing, on either side or in the rows around the time, nothing is
+      // claimed.
+      Series gap("gap", line.columns());
+      for (const double t : {0.0, 1.0, 2.0})
+        gap.add(t, std::vector<double>{0, t == 1 ? not_a_number : 0.5 * (1 + t), 1 + t, 40});
+      const auto find_gap = [&](const std::string& name) {
+        return name == "line" ? &gap : nullptr;
+      };
+      c.x_shift = 0;
+      c.at = 0.5;
+      r = evaluate(c, find_gap);
+      CHECK_FALSE(r.pass);
+      CHECK(r.note.find("1 of 3 points") != std::string::npos);  // that between 0 and 1 m
+      Expect one;
+      one.name = "one";
+      one.probe = "line.height_1";
+      one.measure = "above";
+      one.reduce = "at";
+      one.at = 1.5;
+      CHECK(evaluate(one, find_gap).note == "there is no value at t = 1.5 s");
+      one.at = 2;
+      CHECK(evaluate(one, find_gap).value.value() == 1.5);
+      one.reduce = "last";
+      one.to = 1.2;
+      CHECK(evaluate(one, find_gap).note == "there is no value at t = 1.2 s, the end");
+      one.to.reset();
+      CHECK(evaluate(one, find_gap).value.value() == 1.5);
+      // Round-off at the ends of a line: 0.7 - 0.4 < 0.3.
+      Series ends("line", {{"height_0", "m", "", 0.0}, {"height_1", "m", "", 0.7 - 0.4}});
+      ends.add(0, std::vector<double>{0, 1});
+      write_file_atomically(folder / "ends.csv", "x,z\n0,0\n0.3,1\n");
+      c.reference_csv = FilePath{folder / "ends.csv"};
+      c.at.reset();
+      c.tolerance = 1e-6;
+      CHECK(evaluate(c, [&](const std::string&) { return &ends; }).pass);
       c.at = 3;  // after the run
       CHECK(evaluate(c, find).note == "no point of the reference can be compared");
     }
