@@ -165,6 +165,13 @@ void Stl::inspect(CheckContext& context) const {
                     count(health_.flipped_faces, "face is", "faces are") +
                         " turned against their neighbours; they were flipped",
                     "make the order of corners consistent in the file");
+  if (const double inner = surface_.inner_faces(); inner > 0.005)
+    context.warning("file",
+                    std::to_string(std::lround(100 * inner)) +
+                        " % of the faces lie inside of the solid: closed parts overlap or contain "
+                        "each other, and these faces act as surfaces",
+                    "unite the parts where the file comes from, or give each as a file of its own "
+                    "in a shape of type union");
   if (health_.inside_out)
     context.warning("file", "the faces point inwards; the surface was turned inside out");
   if (health_.degenerate_faces > 0)

@@ -230,6 +230,23 @@ SurfaceDistance::SurfaceDistance(Triangles mesh) : mesh_(std::move(mesh)) {
   }
 }
 
+double SurfaceDistance::inner_faces() const {
+  constexpr std::size_t looked_at = 500;
+  const std::size_t stride = 1 + mesh_.faces.size() / looked_at;
+  Index all = 0, inner = 0;
+  for (std::size_t f = 0; f < mesh_.faces.size(); f += stride) {
+    const auto& face = mesh_.faces[f];
+    const Vec3 &a = mesh_.points[at(face[0])], &b = mesh_.points[at(face[1])],
+               &c = mesh_.points[at(face[2])];
+    const Vec3 area = (b - a).cross(c - a);
+    // A little before the face: outside of the solid, unless another part reaches there.
+    const Vec3 before = (a + b + c) / 3 + 1e-3 * area / std::sqrt(area.norm());
+    ++all;
+    inner += winding_number(before) > 0.5 ? 1 : 0;
+  }
+  return all > 0 ? static_cast<double>(inner) / static_cast<double>(all) : 0;
+}
+
 double SurfaceDistance::winding_number(const Vec3& p) const {
   if (tree_.empty()) return 0.0;
   constexpr double far = 3.0;  // a node farther than this many radii counts as one dipole

@@ -55,6 +55,9 @@ class SurfaceDistance {
 
   double signed_distance(const Vec3& p) const;
   double winding_number(const Vec3& p) const;
+  /// Share of the faces, of up to some hundreds that are looked at, that lie inside of the solid:
+  /// closed parts that overlap or contain each other.
+  double inner_faces() const;
   const Triangles& mesh() const { return mesh_; }
   Aabb box() const { return box_; }
 

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 
@@ -37,9 +39,11 @@ struct ForceProbe final : Probe {
     const bool flat = model.dimension == 2;
     auto columns = vector_columns(model, "f", flat ? unit::stiffness : unit::force,
                                   flat ? "force per metre of depth" : "force");
-    if (flat) columns.push_back({"torque", "N", "torque per metre of depth, about y"});
+    const std::string point =
+        fmt::format("about ({:.6g}, {:.6g}, {:.6g}) m", about.x(), about.y(), about.z());
+    if (flat) columns.push_back({"torque", "N", "torque per metre of depth around y, " + point});
     else
-      for (const Column& c : vector_columns(model, "torque_", unit::moment, "torque"))
+      for (const Column& c : vector_columns(model, "torque_", unit::moment, "torque " + point))
         columns.push_back(c);
     return columns;
   }

@@ -53,6 +53,18 @@ struct SumProbe final : Probe {
                       }))
         c.error(key(k), "probe '" + of[k] + "' has other columns than probe '" + of[0] + "'",
                 "add probes of one type");
+      // Torques about two points make one about none; their sentences end with the point.
+      else if (!std::equal(first.begin(), first.end(), other.begin(), other.end(),
+                           [](const Column& a, const Column& b) {
+                             const auto point = [](const std::string& text) {
+                               return text.substr(std::min(text.rfind("about ("), text.size()));
+                             };
+                             return point(a.sentence) == point(b.sentence);
+                           }))
+        c.error(
+            key(k),
+            "probe '" + of[k] + "' takes torques about another point than probe '" + of[0] + "'",
+            "give both the same 'about'");
     }
   }
   std::vector<Column> columns(const Model& model) const override {

@@ -27,6 +27,11 @@ struct Solid {
   const WallBoundary* wall;
   std::shared_ptr<const Shape> shape;  ///< null: none
   bool in_place;                       ///< at t = 0 at the position of its shape
+  Vec3 origin = Vec3::Zero();          ///< where the motion puts the point zero at t = 0
+  Mat3 turn = Mat3::Identity();
+
+  /// The point of the shape that is at a position at t = 0.
+  Vec3 at_rest(const Vec3& at) const { return turn.transpose() * (at - origin); }
 };
 
 template <int Dim>
@@ -38,9 +43,13 @@ std::vector<Solid> solids_of(const Model& model) {
     if (found == nullptr) continue;
     const WallBoundary& wall = *found;
     Solid s{fmt::format("boundaries[{}]", b), &wall, wall.solid(placement), true};
-    if (wall.motion)
+    if (wall.motion) {
+      s.origin = wall.motion->position(Vec3::Zero(), 0);
+      for (int k = 0; k < 3; ++k)
+        s.turn.col(k) = wall.motion->position(Vec3::Unit(k), 0) - s.origin;
       for (const Vec3& p : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 1)})
         s.in_place = s.in_place && (wall.motion->position(p, 0) - p).norm() < 1e-9;
+    }
     solids.push_back(std::move(s));
   }
   return solids;
@@ -87,15 +96,17 @@ void check_solid(const Scene<Dim>& scene, const Solid& s, Diagnostics& found) {
 template <int Dim>
 void check_deep_in_solid(const Model& model, const ParticleSet<Dim>& set, const Solid& s,
                          Diagnostics& found) {
-  if (!s.shape || !s.in_place) return;
+  if (!s.shape) return;
   const Aabb box = s.shape->box();
   const auto& x = set.vector(fields::position);
   const auto* clamp = set.has(fields::clamp) ? &set.tag(fields::clamp) : nullptr;
-  const double reach = support_radius(model);
+  // Particles finer than those of walls slip between them.
+  const double reach =
+      set.spacing() < 0.99 * model.resolution ? 0.3 * set.spacing() : support_radius(model);
   const auto deep = [&](Index i) {
-    const Vec3 at = to_space<Dim>(x[i]);
-    return !(clamp && (*clamp)[i] >= 0) && box.contains(at) &&
-           s.shape->bound(at) < -0.5 * model.resolution && s.shape->signed_distance(at) < -reach;
+    const Vec3 at = s.at_rest(to_space<Dim>(x[i]));
+    return !(clamp && (*clamp)[i] >= 0) && box.contains(at) && s.shape->bound(at) < 0 &&
+           s.shape->signed_distance(at) < -reach;
   };
   const double count = ordered_sum(set.size(), [&](Index i) { return deep(i) ? 1.0 : 0.0; });
   if (!(count > 0)) return;
@@ -107,9 +118,9 @@ void check_deep_in_solid(const Model& model, const ParticleSet<Dim>& set, const 
     if (d.id == "E121" && d.path == path) return;
   found.error(
       "E121", model.place_of(path), path,
-      fmt::format(
-          "body '{}' overlaps boundary '{}': {:.0f} particles lie deep in the solid, one at {}",
-          model.bodies[body].name, s.wall->name, count, point_text(to_space<Dim>(x[first]))),
+      fmt::format("body '{}' overlaps boundary '{}': {:.0f} particles lie in the solid, one at {}",
+                  model.bodies[body].name, s.wall->name, count,
+                  point_text(to_space<Dim>(x[first]))),
       "let the body end at the surface of the wall");
 }
 

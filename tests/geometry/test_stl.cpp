@@ -280,4 +280,41 @@ TEST_SUITE("geometry") {
     CHECK(report(cube_mesh(), ", translate: [556440, 5394932, 0]").find("coordinates of a map?") !=
           std::string::npos);
   }
+
+  TEST_CASE("faces within the solid show parts that overlap or contain each other, and no cavity") {
+    Triangles all;
+    const auto add_cube = [&](const Vec3& lo, double side, bool cavity) {
+      const auto first = static_cast<std::int32_t>(all.points.size());
+      for (int k = 0; k < 8; ++k)
+        all.points.push_back(lo + side * Vec3(k & 1, (k >> 1) & 1, (k >> 2) & 1));
+      for (const auto& f : {std::array{0, 2, 1},
+                            {1, 2, 3},
+                            {4, 5, 6},
+                            {5, 7, 6},
+                            {0, 1, 4},
+                            {1, 5, 4},
+                            {2, 6, 3},
+                            {3, 6, 7},
+                            {0, 4, 2},
+                            {2, 4, 6},
+                            {1, 3, 5},
+                            {3, 7, 5}})
+        all.faces.push_back({first + f[0], first + f[cavity ? 2 : 1], first + f[cavity ? 1 : 2]});
+    };
+    add_cube({0, 0, 0}, 1, false);
+    CHECK(enclosed_volume(all) == doctest::Approx(1));
+    CHECK(SurfaceDistance(all).inner_faces() == 0);
+    const Triangles one = all;
+    add_cube({0.25, 0.25, 0.25}, 0.5, true);
+    CHECK(SurfaceDistance(all).inner_faces() == 0);
+    all = one;
+    add_cube({0.25, 0.25, 0.25}, 0.5, false);
+    CHECK(SurfaceDistance(all).inner_faces() == 0.5);
+    all = one;
+    add_cube({0.2, 0.2, 0.2}, 1, false);
+    CHECK(SurfaceDistance(all).inner_faces() > 0.1);
+    all = one;
+    add_cube({2, 0, 0}, 1, false);
+    CHECK(SurfaceDistance(all).inner_faces() == 0);
+  }
 }

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/parallel.h"
+#include "scene/cross_check.h"
 #include "support/rig.h"
 
 using namespace sphgeo;
@@ -287,5 +288,27 @@ TEST_SUITE("probes") {
     CHECK(*rig.sample(5)[0] == doctest::Approx(19 * mass));
     CHECK_FALSE(rig.sample(6)[0].has_value());
     CHECK(rig.sample(6)[10].has_value());
+  }
+
+  TEST_CASE("torques about two points are not added") {
+    for (const bool same : {true, false}) {
+      const Model model = read_deck_text(
+          "dimension: 2\nresolution: 0.1\nend_time: 1\n"
+          "materials: [{name: water, type: water}]\n"
+          "bodies: [{name: pool, material: water, shape: {type: box, min: [0, 0, 0], max: [1, 1, "
+          "0.5]}}]\n"
+          "boundaries: [{name: tank, type: tank, min: [0, 0, 0], max: [1, 1, 1], open: [top]}]\n"
+          "probes:\n"
+          "  - {name: a, type: force, boundary: tank, about: [0, 0, 0.25]}\n"
+          "  - {name: b, type: force, boundary: tank, about: [" +
+          std::string(same ? "0" : "1") +
+          ", 0, 0.25]}\n"
+          "  - {name: both, type: sum, of: [a, b]}\n");
+      Diagnostics found;
+      const Scene<2> scene = build_scene<2>(model, found);
+      check_scene(scene, found);
+      CHECK(found.has_errors() != same);
+      if (!same) CHECK(found.render().find("about another point") != std::string::npos);
+    }
   }
 }

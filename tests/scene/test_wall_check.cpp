@@ -126,6 +126,33 @@ TEST_SUITE("scene") {
     }
   }
 
+  TEST_CASE(
+      "bodies in walls are found when the wall moves, and when they are finer than the wall") {
+    const auto ids = [](const std::string& body, const std::string& wall) {
+      const Model model = read_deck_text(
+          "dimension: 2\nresolution: 0.02\nend_time: 1\n"
+          "materials: [{name: stone, type: rigid, density: 2500}]\nbodies: [{name: b, material: "
+          "stone, " +
+          body + "}]\nboundaries: [{name: floor, type: wall, shape: " +
+          box("-0.5, -1, -0.3", "0.5, 1, 0") + wall + "}]\n");
+      Diagnostics found;
+      const Scene<2> scene = build_scene<2>(model, found);
+      check_walls(scene, found);
+      Ids out;
+      for (const Diagnostic& d : found.items()) out.insert(d.id);
+      return out;
+    };
+    const std::string deep = "shape: {type: sphere, center: [0.4, 0, -0.15], radius: 0.04}";
+    CHECK(ids(deep, "") == Ids{"E121"});
+    CHECK(ids(deep, ", motion: {displacement: [0.05 + t, 0, 0]}") == Ids{"E121"});
+    CHECK(ids(deep, ", motion: {displacement: [0, 0, -0.3 + t]}").empty());  // above it at first
+    const auto fine = [](const std::string& bottom) {
+      return "spacing: 0.005, shape: " + box("0, -1, " + bottom, "0.05, 1, 0.04");
+    };
+    CHECK(ids(fine("-0.01"), "") == Ids{"E121"});
+    CHECK(ids(fine("0"), "").empty());
+  }
+
   TEST_CASE("water deep in a solid is found, where no wall particle is") {
     CHECK(findings(pool + "boundaries:\n" + wall("rock", box("-1, -1, -1", "2, 2, 2"))) ==
           Ids{"E121"});
